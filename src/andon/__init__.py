@@ -1,0 +1,1 @@
+"""Andon: light for mixed reality."""

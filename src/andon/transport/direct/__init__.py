@@ -1,1 +1,29 @@
-"""(to come)"""
+"""Direct light of lamps, with shadows: what each lamp adds to every point it sees.
+
+What
+    ``E(P) = I(ω)·max(0, cos φ)/d²`` for lamps with a place, ``E·max(0, cos φ)`` for directional
+    ones, a dome for sky and hemisphere; each times 0 or 1 for shadow. E is in lux, never divided
+    by π.
+Why these shadows
+    The paper looks up one *dual-paraboloid* depth map per lamp (双放物曲面): two discs see all
+    directions, one read per pixel decides. Rasterising triangles straight into the curved map is
+    wrong by texels, so six plane faces are drawn and resampled.
+
+==============================  =============  ==========================  =====================
+shadow                          reads a pixel  a moved lamp, 27k triangles  error
+==============================  =============  ==========================  =====================
+ray (the reference)             –              nothing                     float32 of Embree
+cube map                        1, six ways    6 faces                     1 texel at edges
+**dual paraboloid, resampled**  1              6 faces + 1 pass            1–2 texels at edges
+dual paraboloid, rasterised     1              2 faces                     7 texels on long edges
+==============================  =============  ==========================  =====================
+
+Acne without a fudge factor
+    A shadow map knows its depth at texel *centres* only. Instead of a bias that grows with slope,
+    the receiver's own plane is extended to the texel's centre and compared there: exact for plane
+    receivers. What remains is a lift along the normal by `ShadowBias`, for what decimation and
+    noise leave between surface and occluder.
+
+Sources: the relighting paper, section 2.1, equation (1); Brabec, Annen & Seidel 2002 (dual
+paraboloid shadow maps); glTF 2.0 KHR_lights_punctual (spot falloff).
+"""

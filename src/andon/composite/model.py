@@ -1,0 +1,35 @@
+"""Settings of the composite."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Ambient"]
+
+
+@dataclass(frozen=True)
+class Ambient:
+    """The light that the real scene was captured under.
+
+    Attributes
+    ----------
+    illuminance_lux : E0, (3,) or (H, W, 3), > 0.
+    dimming : (3,) ≥ 0, share of E0 that is left.
+    dimming_mode : ``linear`` (physics), or ``paper``: the paper scales the *encoded* RGB, which
+        darkens more than its number says and shifts colours.
+    """
+
+    illuminance_lux: NDArray[np.float64] = field(default_factory=lambda: np.ones(3))
+    dimming: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    dimming_mode: Literal["linear", "paper"] = "linear"
+
+    @property
+    def mean_lux(self) -> NDArray[np.float64]:
+        """(3,) what virtual objects stand in: E0, or the mean of its image."""
+        if self.illuminance_lux.ndim == 1:
+            return self.illuminance_lux
+        return np.nanmean(self.illuminance_lux, axis=(0, 1))

@@ -1,0 +1,42 @@
+"""The display in float64."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.display.model import Exposure
+from andon.responses import Response
+
+__all__ = ["SHOULDER_START", "encode", "tone_curve"]
+
+# Below this share of white the shoulder is the identity, so that most of a picture is untouched.
+SHOULDER_START = 0.6
+
+
+def tone_curve(linear: NDArray[Any], tone: str, /) -> NDArray[Any]:
+    """Display-linear values in [0, 1] from unbounded ones, any shape, per channel.
+
+    ``reinhard``: y = s + (1−s)·x'/(1+x') with x' = (x−s)/(1−s) above s = 0.6: slope 1 at s, white
+    only at infinity (the operator of Reinhard et al. 2002, equation 3, applied to the shoulder).
+    """
+    if tone == "none":
+        return np.clip(linear, 0, 1)
+    over = np.maximum(linear - SHOULDER_START, 0) / (1 - SHOULDER_START)
+    bent = SHOULDER_START + (1 - SHOULDER_START) * over / (1 + over)
+    return np.where(linear > SHOULDER_START, bent, np.maximum(linear, 0))
+
+
+def encode(
+    luminance_cd_m2: NDArray[Any],
+    exposure: Exposure,
+    response: Response,
+    luminance_per_unit: float,
+    /,
+) -> NDArray[np.uint8]:
+    """(H, W, 3) uint8 from luminance (H, W, 3) in cd/m²; rounded to nearest."""
+    scale = exposure.units_per_cd_m2 or 1 / luminance_per_unit
+    encoded = response.encode(tone_curve(luminance_cd_m2 * scale, exposure.tone))
+    return np.asarray(np.clip(encoded, 0, 1) * 255 + 0.5, np.uint8)

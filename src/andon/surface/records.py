@@ -1,0 +1,97 @@
+"""Host structs of the surface: what the shaders know of a view, and how a G-buffer is packed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.gpu.layout import HostStruct
+from andon.quantities import Surface
+from andon.spaces import View
+
+__all__ = ["NEAR_M", "STRUCTS", "VIEW_RECORD", "pack_surface", "pack_view", "unpack_surface"]
+
+# Nothing nearer than this to an eye is drawn: the near plane, in metres. The depth buffer is
+# reversed and infinite (near/z in float32), so a small value costs no precision.
+NEAR_M = 0.01
+
+PROJECTIONS = {"pinhole": 0, "fisheye": 1, "latlong": 2}
+
+VIEW_RECORD = HostStruct(
+    "ViewRecord",
+    (
+        ("world_from_camera", "mat4x4f"),
+        ("camera_from_world", "mat4x4f"),
+        ("position", "vec3f"),
+        ("projection", "u32"),
+        ("focal", "vec2f"),  # pixels
+        ("centre", "vec2f"),  # pixels, GPU convention: pixel centres at +0.5
+        ("size", "vec2f"),  # pixels
+        ("near_m", "f32"),
+    ),
+)
+
+STRUCTS = {VIEW_RECORD.name: VIEW_RECORD}
+
+# Flags in the fourth word of the G-buffer.
+VALID, OBJECT, MATERIAL_SHIFT = 1, 2, 8
+
+
+def pack_view(view: View, /) -> NDArray[Any]:
+    """One `VIEW_RECORD`. The GPU's half-pixel shift is made here and nowhere else."""
+    return VIEW_RECORD.pack(
+        world_from_camera=view.world_from_camera,
+        camera_from_world=view.camera_from_world,
+        position=view.position,
+        projection=PROJECTIONS[view.projection],
+        focal=(view.fx, view.fy),
+        centre=(view.cx + 0.5, view.cy + 0.5),
+        size=(view.width, view.height),
+        near_m=NEAR_M,
+    )
+
+
+def pack_surface(surface: Surface, /) -> NDArray[np.uint32]:
+    """(H, W, 4) uint32: depth bits, octahedral normal, reflectance, flags (see gbuffer.wgsl)."""
+    packed = np.zeros((*surface.view.shape, 4), np.uint32)
+    depth = np.where(surface.valid, surface.depth, 1.0)
+    packed[..., 0] = depth.astype(np.float32).view(np.uint32)
+    packed[..., 1] = _octahedral(np.where(surface.valid[..., None], surface.normal, (0, 0, 1.0)))
+    root = np.sqrt(np.clip(surface.reflectance, 0, 1))
+    channels = np.rint(root * 255).astype(np.uint32)
+    packed[..., 2] = channels @ np.array([1, 1 << 8, 1 << 16], np.uint32)
+    material = np.maximum(surface.material_id, 0).astype(np.uint32)
+    flags = surface.valid * VALID + surface.is_object * OBJECT
+    packed[..., 3] = np.where(surface.valid, flags + (material << MATERIAL_SHIFT), 0)
+    return packed
+
+
+def _octahedral(normal: NDArray[np.float64]) -> NDArray[np.uint32]:
+    p = normal[..., :2] / np.abs(normal).sum(axis=-1, keepdims=True)
+    sign = np.where(p >= 0, 1.0, -1.0)
+    folded = (1 - np.abs(p[..., ::-1])) * sign
+    e = np.where(normal[..., 2:] >= 0, p, folded)
+    bits = np.rint(np.clip(e, -1, 1) * 32767).astype(np.int16).view(np.uint16).astype(np.uint32)
+    return bits[..., 0] | (bits[..., 1] << np.uint32(16))
+
+
+def unpack_surface(packed: NDArray[np.uint32], view: View, /) -> dict[str, NDArray[Any]]:
+    """depth, normal, reflectance, valid, is_object and material_id from a packed G-buffer."""
+    halves = np.stack([packed[..., 1] & 0xFFFF, packed[..., 1] >> 16], axis=-1)
+    e = np.maximum(halves.astype(np.uint16).view(np.int16) / 32767.0, -1)
+    z = 1 - np.abs(e).sum(axis=-1, keepdims=True)
+    xy = np.where(z >= 0, e, (1 - np.abs(e[..., ::-1])) * np.where(e >= 0, 1.0, -1.0))
+    normal = np.concatenate([xy, z], axis=-1)
+    valid = (packed[..., 3] & VALID) > 0
+    codes = np.stack([(packed[..., 2] >> shift) & 255 for shift in (0, 8, 16)], axis=-1)
+    material = (packed[..., 3] >> MATERIAL_SHIFT).astype(np.int32)
+    return {
+        "depth": np.where(valid, packed[..., 0].view(np.float32), np.nan),
+        "normal": normal / np.linalg.norm(normal, axis=-1, keepdims=True),
+        "reflectance": (codes / 255.0) ** 2,
+        "valid": valid,
+        "is_object": (packed[..., 3] & OBJECT) > 0,
+        "material_id": np.where(valid, material, -1),
+    }

@@ -1,0 +1,158 @@
+"""The surface as a view sees it, in float64: depth images as they are, triangles by Embree."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.quantities import Geometry, Material, Surface
+from andon.rays import RayScene, face_normals
+from andon.spaces import View, rotate, transform_points
+from andon.surface.model import SurfaceModel
+from andon.surface.textures import sample_bilinear
+
+__all__ = ["empty_surface", "from_depth", "from_normals", "nearest", "see", "trace"]
+
+Float = NDArray[np.float64]
+
+
+def see(model: SurfaceModel, view: View, /) -> Surface:
+    """The surface of `view`: the real geometry, and virtual objects where they are nearer."""
+    real = _see_real(model, view)
+    if len(model.objects.triangles) == 0:
+        return real
+    return nearest(real, trace(model.objects, view, is_object=True))
+
+
+def _see_real(model: SurfaceModel, view: View) -> Surface:
+    if view.name in model.depth:
+        return from_depth(model.depth[view.name], model.normals[view.name], view)
+    if model.is_distant_only:
+        return from_normals(model.normals[view.name], view)
+    return trace(model.real, view, is_object=False)
+
+
+def empty_surface(view: View, /) -> Surface:
+    """A surface that is a hole everywhere."""
+    shape = view.shape
+    return Surface(
+        position=np.full((*shape, 3), np.nan),
+        normal=np.full((*shape, 3), np.nan),
+        depth=np.full(shape, np.nan),
+        valid=np.zeros(shape, bool),
+        is_object=np.zeros(shape, bool),
+        reflectance=np.zeros((*shape, 3)),
+        material_id=np.full(shape, -1, np.int32),
+        emitted_cd_m2=np.zeros((*shape, 3)),
+        view=view,
+    )
+
+
+def from_depth(depth: Float, normal: Float, view: View, /) -> Surface:
+    """The real surface of a depth image (H, W) with its world normals (H, W, 3)."""
+    points = transform_points(view.world_from_camera, view.rays_planar() * depth[..., None])
+    valid = np.isfinite(depth) & np.isfinite(normal).all(axis=-1)
+    return Surface(
+        position=np.where(valid[..., None], points, np.nan),
+        normal=np.where(valid[..., None], normal, np.nan),
+        depth=np.where(valid, depth, np.nan),
+        valid=valid,
+        is_object=np.zeros(view.shape, bool),
+        reflectance=np.zeros((*view.shape, 3)),
+        material_id=np.full(view.shape, -1, np.int32),
+        emitted_cd_m2=np.zeros((*view.shape, 3)),
+        view=view,
+    )
+
+
+def from_normals(normal: Float, view: View, /) -> Surface:
+    """A normals-only surface: valid where the normal (H, W, 3) is, positions unknown."""
+    surface = from_depth(np.ones(view.shape), normal, view)
+    unknown = np.full((*view.shape, 3), np.nan)
+    return Surface(**{**vars(surface), "position": unknown})
+
+
+def trace(geometry: Geometry, view: View, /, *, is_object: bool) -> Surface:
+    """Triangles as `view` sees them, one ray through each pixel's centre."""
+    origin, directions = view.rays_world()
+    flat = directions.reshape(-1, 3)
+    hits = RayScene(geometry).first_hits(np.broadcast_to(origin, flat.shape), flat)
+    valid = hits.triangle >= 0
+    triangle, weights, rays = hits.triangle[valid], hits.barycentric[valid], flat[valid]
+    surface = empty_surface(view)
+    mask = valid.reshape(view.shape)
+    points = origin + rays * hits.distance[valid, None]
+    surface.position[mask] = points
+    surface.normal[mask] = _towards(shading_normals(geometry, triangle, weights), rays)
+    surface.depth[mask] = _depth(points, view)
+    surface.valid[mask] = True
+    surface.is_object[mask] = is_object
+    _fill_material(surface, mask, geometry, triangle, weights)
+    return surface
+
+
+def _depth(points: Float, view: View) -> Float:
+    camera = transform_points(view.camera_from_world, points)
+    return camera[:, 2] if view.projection == "pinhole" else np.linalg.norm(camera, axis=1)
+
+
+def _towards(normals: Float, rays: Float) -> Float:
+    """The normals, turned so that they face the viewer."""
+    return normals * np.where(np.einsum("ij,ij->i", normals, rays) > 0, -1.0, 1.0)[:, None]
+
+
+def shading_normals(geometry: Geometry, triangle: NDArray[np.int32], weights: Float, /) -> Float:
+    """Unit normals (n, 3) at barycentric `weights` (n, 3): interpolated, or flat."""
+    if geometry.normals is None:
+        return face_normals(geometry)[triangle]
+    corners = geometry.normals[geometry.triangles[triangle]]
+    blended = np.einsum("nij,ni->nj", corners, weights)
+    length = np.linalg.norm(blended, axis=1, keepdims=True)
+    flat = face_normals(geometry)[triangle]
+    return np.where(length > 1e-9, blended / np.maximum(length, 1e-9), flat)
+
+
+def _fill_material(
+    surface: Surface,
+    mask: NDArray[np.bool_],
+    geometry: Geometry,
+    triangle: NDArray[np.int32],
+    weights: Float,
+) -> None:
+    ids = np.zeros(len(geometry.triangles), np.int32)
+    ids = ids if geometry.material_ids is None else geometry.material_ids
+    chosen = ids[triangle]
+    base = np.array([m.reflectance for m in geometry.materials])[chosen]
+    emitted = np.array([m.emissive_cd_m2 for m in geometry.materials])[chosen]
+    if geometry.uvs is not None:
+        uv = np.einsum("nij,ni->nj", geometry.uvs[geometry.triangles[triangle]], weights)
+        base = base * _textures(geometry.materials, chosen, uv)
+    surface.reflectance[mask] = np.clip(base, 0, 1)
+    surface.material_id[mask] = chosen
+    surface.emitted_cd_m2[mask] = emitted
+
+
+def _textures(materials: tuple[Material, ...], chosen: NDArray[Any], uv: Float) -> Float:
+    factor = np.ones((len(chosen), 3))
+    for index, material in enumerate(materials):
+        if material.texture is not None:
+            here = chosen == index
+            factor[here] = sample_bilinear(material.texture, uv[here])
+    return factor
+
+
+def nearest(real: Surface, objects: Surface, /) -> Surface:
+    """Pixel by pixel, whichever is nearer; objects stand in front of holes."""
+    with np.errstate(invalid="ignore"):
+        front = objects.valid & (~real.valid | (objects.depth < real.depth))
+    fields = {
+        name: np.where(front.reshape(*front.shape, *[1] * (value.ndim - 2)), other, value)
+        for name, value, other in (
+            (name, getattr(real, name), getattr(objects, name))
+            for name in vars(real)
+            if name != "view"
+        )
+    }
+    return Surface(**fields, view=real.view)

@@ -1,0 +1,229 @@
+"""The G-buffer on the GPU: uploaded where a depth image is its own view, rasterised otherwise."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.gpu.device import Gpu
+from andon.gpu.passes import bind, color_attachment, shader_module
+from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
+from andon.quantities import Geometry, Surface
+from andon.rays import face_normals
+from andon.spaces import View
+from andon.surface import reference
+from andon.surface.model import SurfaceModel
+from andon.surface.records import (
+    NEAR_M,
+    OBJECT,
+    STRUCTS,
+    VALID,
+    VIEW_RECORD,
+    pack_surface,
+    pack_view,
+    unpack_surface,
+)
+from andon.surface.textures import TEXTURE_SIDE_PX
+
+__all__ = ["NEAR_M", "GpuSurface", "SurfaceStage"]
+
+SHADER = "andon/surface/raster.wgsl"
+VERTEX = np.dtype(
+    [("position", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("material", "<u4")]
+)
+
+
+class GpuSurface:
+    """A packed G-buffer and the view it belongs to.
+
+    Attributes
+    ----------
+    texture : (H, W) rgba32uint, see gbuffer.wgsl.
+    view_buffer : one `VIEW_RECORD`.
+    emitted_cd_m2 : (materials, 3), what the materials of virtual objects emit.
+    """
+
+    def __init__(self, gpu: Gpu, view: View, emitted_cd_m2: NDArray[np.float64]) -> None:
+        self.view = view
+        self.emitted_cd_m2 = emitted_cd_m2
+        self.texture = make_texture(gpu, "rgba32uint", view.width, view.height, label="g-buffer")
+        self.view_buffer = uniform_buffer(gpu, VIEW_RECORD.dtype.itemsize, "view")
+        write_buffer(gpu, self.view_buffer, pack_view(view))
+
+    def read(self) -> Surface:
+        """The surface as arrays; precision of the packing: normals 3e-5 rad, depth float32."""
+        fields = unpack_surface(self.texture.read(), self.view)
+        points = reference.from_depth(fields["depth"], fields["normal"], self.view)
+        emitted = np.zeros_like(points.reflectance)
+        if len(self.emitted_cd_m2):
+            emitted = self.emitted_cd_m2[np.maximum(fields["material_id"], 0)]
+        emitted = emitted * fields["is_object"][..., None]
+        return Surface(**{**vars(points), **fields, "emitted_cd_m2": emitted, "view": self.view})
+
+
+class SurfaceStage:
+    """Sees one model through one view, as often as the frame is drawn.
+
+    A pinhole view is rasterised every time. Fisheye and latlong views, whose straight lines are
+    curved, are traced by Embree when the stage is made and uploaded.
+    """
+
+    def __init__(self, gpu: Gpu, model: SurfaceModel, view: View) -> None:
+        self.gpu, self.model, self.view = gpu, model, view
+        objects = model.objects
+        emitted = np.array([m.emissive_cd_m2 for m in objects.materials], float).reshape(-1, 3)
+        self.surface = GpuSurface(gpu, view, emitted)
+        on_host = view.projection != "pinhole"
+        has_picture = view.name in model.depth or model.is_distant_only
+        self._draws: list[_Draw] = []
+        self._background: Texture | None = None
+        if on_host or (has_picture and len(objects.triangles) == 0):
+            self.surface.texture.write(pack_surface(reference.see(model, view)))
+            return
+        if has_picture:
+            real = reference.see(SurfaceModel(depth=model.depth, normals=model.normals), view)
+            self._background = make_texture(gpu, "rgba32uint", view.width, view.height)
+            self._background.write(pack_surface(real))
+        self._make_pipelines()
+        if not has_picture:
+            self._draws.append(_Draw(self, model.real, VALID))
+        if len(objects.triangles):
+            self._draws.append(_Draw(self, objects, VALID | OBJECT))
+
+    @property
+    def is_static(self) -> bool:
+        """Nothing is drawn: the G-buffer was uploaded once."""
+        return not self._draws
+
+    def _make_pipelines(self) -> None:
+        gpu, view = self.gpu, self.view
+        module = shader_module(gpu, SHADER, STRUCTS)
+        self._depth = make_texture(gpu, "depth32float", view.width, view.height)
+        attributes = [
+            {"format": "float32x3", "offset": 0, "shader_location": 0},
+            {"format": "float32x3", "offset": 12, "shader_location": 1},
+            {"format": "float32x2", "offset": 24, "shader_location": 2},
+            {"format": "uint32", "offset": 32, "shader_location": 3},
+        ]
+        buffers = [
+            {"array_stride": VERTEX.itemsize, "step_mode": "vertex", "attributes": attributes}
+        ]
+        self.pipeline = self._pipeline(module, "corner", "surface", buffers, "greater")
+        self._fill: Any = None
+        if self._background is not None:
+            self._fill = self._pipeline(module, "fullscreen", "background", [], "always")
+            self._fill_group = bind(
+                gpu, self._fill, 0, {0: self.surface.view_buffer, 4: self._background.view}
+            )
+
+    def _pipeline(
+        self, module: Any, vertex: str, fragment: str, buffers: list[dict[str, Any]], compare: str
+    ) -> Any:
+        return self.gpu.device.create_render_pipeline(
+            label=f"{SHADER}:{fragment}",
+            layout="auto",
+            vertex={"module": module, "entry_point": vertex, "buffers": buffers},
+            primitive={"topology": "triangle-list", "cull_mode": "none"},
+            depth_stencil={
+                "format": "depth32float",
+                "depth_write_enabled": True,
+                "depth_compare": compare,
+            },
+            fragment={
+                "module": module,
+                "entry_point": fragment,
+                "targets": [{"format": "rgba32uint"}],
+            },
+        )
+
+    def encode(self, encoder: Any) -> GpuSurface:
+        """Records the drawing of the G-buffer; returns where it will be."""
+        if not self._draws:
+            return self.surface
+        render = encoder.begin_render_pass(
+            label="surface",
+            color_attachments=[color_attachment(self.surface.texture.view)],
+            depth_stencil_attachment={
+                "view": self._depth.view,
+                "depth_load_op": "clear",
+                "depth_store_op": "discard",
+                "depth_clear_value": 0.0,
+            },
+        )
+        if self._fill is not None:
+            render.set_pipeline(self._fill)
+            render.set_bind_group(0, self._fill_group)
+            render.draw(3)
+        render.set_pipeline(self.pipeline)
+        for draw in self._draws:
+            draw.encode(render)
+        render.end()
+        return self.surface
+
+
+class _Draw:
+    """Buffers of one geometry."""
+
+    def __init__(self, stage: SurfaceStage, geometry: Geometry, flags: int) -> None:
+        import wgpu
+
+        gpu = stage.gpu
+        vertices, indices = vertex_arrays(geometry)
+        self.count = indices.size
+        device, usage = gpu.device, wgpu.BufferUsage
+        self.vertices = device.create_buffer_with_data(data=vertices, usage=usage.VERTEX)
+        self.indices = device.create_buffer_with_data(data=indices, usage=usage.INDEX)
+        flag_buffer = uniform_buffer(gpu, 16, "draw flags")
+        write_buffer(gpu, flag_buffer, np.array([flags, 0, 0, 0], np.uint32))
+        table, textures = _material_table(gpu, geometry)
+        materials = device.create_buffer_with_data(data=table, usage=usage.STORAGE)
+        self.group = bind(
+            gpu,
+            stage.pipeline,
+            0,
+            {0: stage.surface.view_buffer, 1: flag_buffer, 2: materials, 3: textures.view},
+        )
+
+    def encode(self, render: Any) -> None:
+        render.set_bind_group(0, self.group)
+        render.set_vertex_buffer(0, self.vertices)
+        render.set_index_buffer(self.indices, "uint32")
+        render.draw_indexed(self.count)
+
+
+def vertex_arrays(geometry: Geometry, /) -> tuple[NDArray[Any], NDArray[np.uint32]]:
+    """Vertices (n,) of `VERTEX` and indices (3m,); flat shading gets its own three corners."""
+    triangles = geometry.triangles
+    ids = geometry.material_ids
+    shared = geometry.normals is not None and (ids is None or not ids.any())
+    corner = np.arange(len(geometry.positions)) if shared else triangles.ravel()
+    vertices = np.zeros(len(corner), VERTEX)
+    vertices["position"] = geometry.positions[corner]
+    if geometry.normals is not None:
+        vertices["normal"] = geometry.normals[corner]
+    else:
+        vertices["normal"] = np.repeat(face_normals(geometry), 3, axis=0)
+    if geometry.uvs is not None:
+        vertices["uv"] = geometry.uvs[corner]
+    if ids is not None and not shared:
+        vertices["material"] = np.repeat(ids, 3)
+    indices = triangles.ravel() if shared else np.arange(len(corner))
+    return vertices, indices.astype(np.uint32)
+
+
+def _material_table(gpu: Gpu, geometry: Geometry) -> tuple[NDArray[np.float32], Texture]:
+    textured = [m for m in geometry.materials if m.texture is not None]
+    side = TEXTURE_SIDE_PX if textured else 1
+    # Half floats hold linear light to 0.05 %; 8 bits would band in the darks.
+    stack = make_texture(gpu, "rgba16float", side, side, layers=max(1, len(textured)))
+    table = np.full((len(geometry.materials), 4), -1.0, np.float32)
+    layer = 0
+    for row, material in zip(table, geometry.materials, strict=True):
+        row[:3] = material.reflectance
+        if material.texture is not None and geometry.uvs is not None:
+            stack.write(np.dstack([material.texture, np.ones((side, side))]), layer)
+            row[3] = layer
+            layer += 1
+    return table, stack

@@ -1,0 +1,40 @@
+"""What every picture reader returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from numpy.typing import NDArray
+
+__all__ = ["Picture"]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture as read, upright, in Rec.709 primaries.
+
+    Attributes
+    ----------
+    values : (H, W, 3) uint8 or uint16 (full range, encoded) or float32 (linear), row 0 on top.
+        Gray pictures have three equal channels. Alpha is dropped: PNG colour is stored straight,
+        so it is left as it is and not composited on anything; EXR colour is premultiplied, which
+        *is* the light that arrives.
+    encoding : ``srgb`` (IEC 61966-2-1 transfer function) or ``linear``.
+    icc : name of the embedded profile that `values` were converted *from*, or None.
+    hfov_degrees : horizontal field of view from EXIF, of the upright picture, or None.
+    view_line : Radiance's VIEW line without the keyword, or None.
+    attributes : header entries that are numbers or text (EXR, HDR, PNG's ``gamma``), by name.
+    """
+
+    values: NDArray[Any]
+    encoding: Literal["srgb", "linear"]
+    icc: str | None = None
+    hfov_degrees: float | None = None
+    view_line: str | None = None
+    attributes: dict[str, Any] = field(default_factory=dict[str, Any])
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(height, width) in pixels."""
+        return self.values.shape[0], self.values.shape[1]

@@ -1,0 +1,124 @@
+"""Writers of pictures: PNG and JPEG for people, EXR and NPY for machines. All are atomic."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.errors import InputError, MachineError
+from andon.files.atomic import write_atomically, write_bytes
+from andon.files.pictures.primaries import REC709_XY
+from andon.quantities import Photometry
+
+__all__ = ["write_exr", "write_jpeg", "write_npy", "write_picture", "write_png"]
+
+JPEG_QUALITY = 95  # with full chroma; below that block edges show in dark gradients
+
+
+def write_png(path: str | Path, values: NDArray[Any]) -> Path:
+    """Write (H, W) or (H, W, 3) uint8 or uint16, sRGB-encoded, as PNG; returns the path."""
+    _check_array(values, path, (np.uint8, np.uint16))
+    if values.dtype == np.uint8:
+        return write_bytes(path, _pillow_bytes(values, "PNG"))
+    import cv2
+
+    stored = values if values.ndim == 2 else np.ascontiguousarray(values[..., ::-1])
+    done, encoded = cv2.imencode(".png", stored)
+    if not done:
+        raise MachineError(f"{path}: OpenCV could not encode the PNG")
+    return write_bytes(path, encoded.tobytes())
+
+
+def write_jpeg(path: str | Path, values: NDArray[np.uint8], *, quality: int = JPEG_QUALITY) -> Path:
+    """Write (H, W) or (H, W, 3) uint8 sRGB as JPEG without chroma subsampling."""
+    _check_array(values, path, (np.uint8,))
+    return write_bytes(path, _pillow_bytes(values, "JPEG", quality=quality, subsampling=0))
+
+
+def write_picture(path: str | Path, values: NDArray[Any]) -> Path:
+    """Write a picture for people; the suffix decides: .png, .jpg or .jpeg."""
+    suffix = Path(path).suffix.lower()
+    if suffix == ".png":
+        return write_png(path, values)
+    if suffix in (".jpg", ".jpeg"):
+        return write_jpeg(path, values)
+    raise InputError(
+        f"the suffix of a picture must be .png, .jpg or .jpeg, got {suffix!r}",
+        file=path,
+        remedy="measured values are written as .exr, with their unit",
+    )
+
+
+def write_exr(
+    path: str | Path,
+    values: NDArray[Any],
+    *,
+    unit: str,
+    photometry: Photometry = "absolute",
+    attributes: dict[str, str | int | float] | None = None,
+) -> Path:
+    """Write measured values as a 32-bit float EXR.
+
+    Parameters
+    ----------
+    values : (H, W, 3) linear Rec.709 (channels R, G, B), or (H, W) or (H, W, 1) (channel Y).
+        Non-finite values are kept.
+    unit : header attribute ``andon:unit``: ``lx``, ``cd/m2``, ``m`` …
+    photometry : header attribute ``andon:photometry``.
+    attributes : further header attributes; they win over the two above.
+    """
+    if values.ndim == 3 and values.shape[2] == 1:
+        values = values[..., 0]
+    _check_array(values, path, (np.float16, np.float32, np.float64))
+    import OpenEXR
+
+    names = "Y" if values.ndim == 2 else "RGB"
+    planes = np.moveaxis(np.atleast_3d(values.astype(np.float32)), -1, 0)
+    header: dict[str, Any] = {
+        "compression": OpenEXR.ZIP_COMPRESSION,
+        "type": OpenEXR.scanlineimage,
+        "chromaticities": REC709_XY,
+        "andon:unit": unit,
+        "andon:photometry": photometry,
+        **(attributes or {}),
+    }
+    channels = {name: np.ascontiguousarray(plane) for name, plane in zip(names, planes, strict=True)}
+
+    def fill(temporary: Path) -> None:
+        try:
+            OpenEXR.File(header, channels).write(str(temporary))
+        except RuntimeError as error:  # the library's words for a file system that refuses
+            raise OSError(str(error)) from error
+
+    return write_atomically(path, fill)
+
+
+def write_npy(path: str | Path, values: NDArray[Any]) -> Path:
+    """Write any numeric array as NPY."""
+    if values.dtype.hasobject:
+        raise InputError("an array of Python objects must not be written", file=path)
+    stream = io.BytesIO()
+    np.save(stream, values, allow_pickle=False)
+    return write_bytes(path, stream.getvalue())
+
+
+def _check_array(values: NDArray[Any], path: str | Path, kinds: tuple[Any, ...]) -> None:
+    shaped = values.ndim == 2 or (values.ndim == 3 and values.shape[2] == 3)
+    if not shaped or 0 in values.shape or values.dtype not in [np.dtype(kind) for kind in kinds]:
+        names = " or ".join(np.dtype(kind).name for kind in kinds)
+        raise InputError(
+            f"the array must be (H, W) or (H, W, 3) {names}, got {values.shape} {values.dtype}",
+            file=path,
+        )
+
+
+def _pillow_bytes(values: NDArray[np.uint8], kind: str, **options: Any) -> bytes:
+    from PIL import Image
+
+    stream = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(values)).save(stream, format=kind, **options)
+    return stream.getvalue()

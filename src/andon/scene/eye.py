@@ -14,24 +14,33 @@ __all__ = ["Atmosphere", "Display", "Gaze", "Glare", "Observer"]
 class Observer(Table):
     """Whose eyes."""
 
-    age: Annotated[float, Field(ge=0, le=120)] = Field(25.0, description="Years, 0…120.")
+    age: Annotated[float, Field(ge=0, le=120)] = Field(
+        default=25.0,
+        description="Years, 0…120.",
+    )
     pigment: Annotated[float, Field(ge=0, le=1.2)] = Field(
-        0.5, description="CIE pigmentation: 0 black, 0.5 brown, 1.0 light, 1.2 very light eyes."
+        default=0.5,
+        description="CIE pigmentation: 0 black, 0.5 brown, 1.0 light, 1.2 very light eyes.",
     )
     pupil_mm: Annotated[float, Field(ge=1, le=10)] | None = Field(
-        None, description="Fixed pupil diameter in mm (2…8 in life)."
+        default=None,
+        description="Fixed pupil diameter in mm (2…8 in life).",
     )
     pupil_model: Literal["moon-spencer", "watson-yellott"] | None = Field(
-        None, description="Pupil from the adaptation luminance; default: watson-yellott."
+        default=None,
+        description="Pupil from the adaptation luminance; default: watson-yellott.",
     )
     glasses: Literal["none", "spectacles", "contact-lenses"] = Field(
-        "none", description="What is worn; short-sighted lenses add needles to glare."
+        default="none",
+        description="What is worn; short-sighted lenses add needles to glare.",
     )
     glasses_dioptres: Annotated[float, Field(ge=-30, le=30)] = Field(
-        0.0, description="Power of what is worn, dioptres; negative for short sight."
+        default=0.0,
+        description="Power of what is worn, dioptres; negative for short sight.",
     )
     interpupillary_mm: Annotated[float, Field(gt=0, le=100)] = Field(
-        63.0, description="Distance of the pupils in mm."
+        default=63.0,
+        description="Distance of the pupils in mm.",
     )
 
     @model_validator(mode="after")
@@ -47,22 +56,42 @@ class Gaze(Table):
     source: Literal[
         "capture", "file", "lsl", "mouse", "openxr", "fixed", "surface", "background"
     ] = Field(
-        "capture",
+        default="capture",
         description="capture: capture.gaze; fixed: distance_m; surface, background: a layer of "
         "the glass.",
     )
-    file: Reference | None = Field(None, description="Recording (CSV) of source file.")
-    stream: str | None = Field(None, description="Name of the LSL stream; default: the first gaze.")
+    file: Reference | None = Field(
+        default=None,
+        description="Recording (CSV) of source file.",
+    )
+    stream: str | None = Field(
+        default=None,
+        description="Name of the LSL stream; default: the first gaze.",
+    )
     distance_m: Positive | None = Field(
-        None, description="Fixation distance of source fixed, metres."
+        default=None,
+        description="Fixation distance of source fixed, metres.",
     )
     filter: Literal["none", "paper", "one-euro"] = Field(
-        "one-euro", description="Smoothing, in dioptres; paper: mean of `samples` in metres."
+        default="one-euro",
+        description="Smoothing, in dioptres; paper: mean of `samples` in metres.",
     )
-    samples: Annotated[int, Field(ge=1, le=1000)] = Field(20, description="Of the mean.")
-    minimum_cutoff_hz: Positive = Field(1.0, description="Of one-euro: cutoff at rest, Hz.")
-    speed_coefficient: NonNegative = Field(0.5, description="Of one-euro: Hz per dioptre/s.")
-    minimum_confidence: Fraction = Field(0.6, description="Samples below this are dropped.")
+    samples: Annotated[int, Field(ge=1, le=1000)] = Field(
+        default=20,
+        description="Of the mean.",
+    )
+    minimum_cutoff_hz: Positive = Field(
+        default=1.0,
+        description="Of one-euro: cutoff at rest, Hz.",
+    )
+    speed_coefficient: NonNegative = Field(
+        default=0.5,
+        description="Of one-euro: Hz per dioptre/s.",
+    )
+    minimum_confidence: Fraction = Field(
+        default=0.6,
+        description="Samples below this are dropped.",
+    )
 
     @model_validator(mode="after")
     def _check_source(self) -> Gaze:
@@ -76,7 +105,10 @@ class Gaze(Table):
 class Atmosphere(Table):
     """What is in the air."""
 
-    mist: NonNegative = Field(0.0, description="Relative mist; 0: clear air.")
+    mist: NonNegative = Field(
+        default=0.0,
+        description="Relative mist; 0: clear air.",
+    )
 
 
 class Glare(Table):
@@ -92,29 +124,46 @@ class Glare(Table):
         "paper",
         "glow",
     ] = Field(
-        "cie135",
+        default="cie135",
         description="Point-spread function; paper: the paper's own; glow: a Gaussian around "
         "luminous bodies, no eye.",
     )
     renderer: Literal["auto", "per-source", "whole-picture"] = Field(
-        "auto", description="Around each source, or a filter over the picture."
+        default="auto",
+        description="Around each source, or a filter over the picture.",
     )
-    highlights: bool = Field(True, description="Highlights on virtual metal and water glare too.")
+    highlights: bool = Field(
+        default=True,
+        description="Highlights on virtual metal and water glare too.",
+    )
     highlight_contrast: Positive = Field(
-        40.0, description="Halo and needles from this luminance ratio to the surround on."
+        default=40.0,
+        description="Halo and needles from this luminance ratio to the surround on.",
     )
-    halo: bool = Field(True, description="The coloured ring.")
-    needles: bool = Field(True, description="Flare needles.")
+    halo: bool = Field(
+        default=True,
+        description="The coloured ring.",
+    )
+    needles: bool = Field(
+        default=True,
+        description="Flare needles.",
+    )
     adaptation: Literal["auto", "photopic", "mesopic", "scotopic"] = Field(
-        "auto", description="Weights of the model spencer."
+        default="auto",
+        description="Weights of the model spencer.",
     )
     minimum_angle_degrees: Positive = Field(
-        0.1, description="Light scattered by less than this stays where it is, degrees."
+        default=0.1,
+        description="Light scattered by less than this stays where it is, degrees.",
     )
     glow_sigma_degrees: Positive | None = Field(
-        None, description="Of the model glow: σ in degrees; default: as much as cie135 within 1°."
+        default=None,
+        description="Of the model glow: σ in degrees; default: as much as cie135 within 1°.",
     )
-    seed: Count | None = Field(None, description="Pattern of needles; default: from scene.seed.")
+    seed: Count | None = Field(
+        default=None,
+        description="Pattern of needles; default: from scene.seed.",
+    )
 
     @model_validator(mode="after")
     def _check_glow(self) -> Glare:
@@ -127,20 +176,27 @@ class Display(Table):
     """From luminance to the screen."""
 
     mode: Literal["vst", "ost"] = Field(
-        "vst", description="vst: video see-through; ost: optical, adds light to what is seen."
+        default="vst",
+        description="vst: video see-through; ost: optical, adds light to what is seen.",
     )
     exposure: Positive | None = Field(
-        None,
+        default=None,
         description="Linear screen value per cd/m². Default: 1/capture.luminance_per_unit, which "
         "gives light that was not changed its own bytes back.",
     )
     tone: Literal["none", "reinhard", "fusion"] = Field(
-        "none", description="none: clips; reinhard: compresses; fusion: Mertens exposure fusion."
+        default="none",
+        description="none: clips; reinhard: compresses; fusion: Mertens exposure fusion.",
     )
     peak_luminance_cd_m2: Positive | None = Field(
-        None, description="cd/m² of screen value 1; needed where mode is ost."
+        default=None,
+        description="cd/m² of screen value 1; needed where mode is ost.",
     )
     transmittance: Fraction = Field(
-        1.0, description="τ of an optical see-through display: share of real light that passes."
+        default=1.0,
+        description="τ of an optical see-through display: share of real light that passes.",
     )
-    dither: bool = Field(False, description="Noise of half a step against banding.")
+    dither: bool = Field(
+        default=False,
+        description="Noise of half a step against banding.",
+    )

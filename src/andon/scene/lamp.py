@@ -38,8 +38,8 @@ _FLUX = "Luminous flux in lm."
 
 class _Bulb(LampTable, Shadowing, Shelled):
     position: Vector = Field(description="Position in metres, world.")
-    intensity_cd: NonNegative | None = Field(None, description=_INTENSITY)
-    flux_lm: NonNegative | None = Field(None, description=_FLUX)
+    intensity_cd: NonNegative | None = Field(default=None, description=_INTENSITY)
+    flux_lm: NonNegative | None = Field(default=None, description=_FLUX)
 
 
 class PointTable(_Bulb):
@@ -55,10 +55,12 @@ class SpotTable(_Bulb):
     direction: Direction = Field(description="Where the axis points, world; any length.")
     # Defaults of KHR_lights_punctual.
     inner_degrees: Annotated[float, Field(ge=0, le=90)] = Field(
-        0.0, description="Half-angle of the full-intensity cone in degrees, 0 ≤ inner < outer."
+        default=0.0,
+        description="Half-angle of the full-intensity cone in degrees, 0 ≤ inner < outer.",
     )
     outer_degrees: Annotated[float, Field(gt=0, le=90)] = Field(
-        45.0, description="Half-angle where the light ends in degrees, inner < outer ≤ 90."
+        default=45.0,
+        description="Half-angle where the light ends in degrees, inner < outer ≤ 90.",
     )
 
     @model_validator(mode="after")
@@ -79,29 +81,43 @@ class IesTable(_Bulb):
 
     file: Reference = Field(description="The .ies or .ldt file.")
     direction: Direction = Field(
-        (0.0, -1.0, 0.0), description="Where the luminaire's nadir (γ = 0) points, world."
+        default=(0.0, -1.0, 0.0),
+        description="Where the luminaire's nadir (γ = 0) points, world.",
     )
-    roll_degrees: float = Field(0.0, description="Turn of the C planes about the nadir, degrees.")
+    roll_degrees: float = Field(
+        default=0.0,
+        description="Turn of the C planes about the nadir, degrees.",
+    )
     intensity_cd: NonNegative | None = Field(
-        None, description="Scales the file so that its peak is this, in cd; neither: as the file."
+        default=None,
+        description="Scales the file so that its peak is this, in cd; neither: as the file.",
     )
-    flux_lm: NonNegative | None = Field(None, description="Scales the file to this flux in lm.")
+    flux_lm: NonNegative | None = Field(
+        default=None,
+        description="Scales the file to this flux in lm.",
+    )
 
 
 class _Area(LampTable, Shadowing):
     kinds_of_light: ClassVar[tuple[str, ...]] = ("intensity_cd", "flux_lm", "luminance_cd_m2")
 
     intensity_cd: NonNegative | None = Field(
-        None, description="Luminous intensity along the normal (sphere, tube: broadside) in cd."
+        default=None,
+        description="Luminous intensity along the normal (sphere, tube: broadside) in cd.",
     )
-    flux_lm: NonNegative | None = Field(None, description=_FLUX)
+    flux_lm: NonNegative | None = Field(default=None, description=_FLUX)
     luminance_cd_m2: NonNegative | None = Field(
-        None, description="Luminance of the area in cd/m², equal to all sides."
+        default=None,
+        description="Luminance of the area in cd/m², equal to all sides.",
     )
     texture: Reference | None = Field(
-        None, description="Picture on the area, linear; its mean has the stated luminance."
+        default=None,
+        description="Picture on the area, linear; its mean has the stated luminance.",
     )
-    drawn: bool = Field(True, description="The area is seen in the picture.")
+    drawn: bool = Field(
+        default=True,
+        description="The area is seen in the picture.",
+    )
 
 
 class SphereTable(_Area):
@@ -119,7 +135,10 @@ class DiskTable(_Area):
     position: Vector = Field(description="Centre in metres, world.")
     direction: Direction = Field(description="Normal of the emitting side, world.")
     radius_m: Positive = Field(description="Radius in metres.")
-    two_sided: bool = Field(False, description="Emits from both sides.")
+    two_sided: bool = Field(
+        default=False,
+        description="Emits from both sides.",
+    )
 
 
 class RectangleTable(_Area):
@@ -128,17 +147,26 @@ class RectangleTable(_Area):
     kind: Literal["rectangle"] = Field(description="Kind of lamp.")
     position: Vector = Field(description="Centre in metres, world.")
     direction: Direction = Field(description="Normal of the emitting side, world.")
-    up: Direction = Field((0.0, 1.0, 0.0), description="Which way its height runs, world.")
+    up: Direction = Field(
+        default=(0.0, 1.0, 0.0),
+        description="Which way its height runs, world.",
+    )
     width_m: Positive = Field(description="Width in metres.")
     height_m: Positive = Field(description="Height in metres.")
-    two_sided: bool = Field(False, description="Emits from both sides.")
+    two_sided: bool = Field(
+        default=False,
+        description="Emits from both sides.",
+    )
 
 
 class TubeTable(_Area):
     """A fluorescent tube: a cylinder with round ends."""
 
     kind: Literal["tube"] = Field(description="Kind of lamp.")
-    position: Vector = Field((0.0, 0.0, 0.0), description="Offset of `ends` in metres, world.")
+    position: Vector = Field(
+        default=(0.0, 0.0, 0.0),
+        description="Offset of `ends` in metres, world.",
+    )
     ends: tuple[Vector, Vector] = Field(description="Both ends of the axis in metres.")
     radius_m: Positive = Field(description="Radius in metres.")
 
@@ -153,18 +181,27 @@ class PolygonTable(_Area):
     """A flat polygon; emits to the side from which its vertices run counter-clockwise."""
 
     kind: Literal["polygon"] = Field(description="Kind of lamp.")
-    position: Vector = Field((0.0, 0.0, 0.0), description="Offset of `vertices` in metres, world.")
+    position: Vector = Field(
+        default=(0.0, 0.0, 0.0),
+        description="Offset of `vertices` in metres, world.",
+    )
     vertices: Annotated[tuple[Vector, ...], Field(min_length=3, max_length=1024)] = Field(
         description="Corners in metres, 3…1024 of them."
     )
-    two_sided: bool = Field(False, description="Emits from both sides.")
+    two_sided: bool = Field(
+        default=False,
+        description="Emits from both sides.",
+    )
 
 
 class MeshTable(_Area):
     """A lamp of any form."""
 
     kind: Literal["mesh"] = Field(description="Kind of lamp.")
-    position: Vector = Field((0.0, 0.0, 0.0), description="Offset of the mesh in metres, world.")
+    position: Vector = Field(
+        default=(0.0, 0.0, 0.0),
+        description="Offset of the mesh in metres, world.",
+    )
     mesh: Reference = Field(description="Mesh file; every triangle emits outwards.")
 
 
@@ -176,19 +213,25 @@ class DirectionalTable(LampTable, Shadowing):
 
     direction: Direction = Field(description="Where the light travels, world; any length.")
     illuminance_lux: NonNegative | None = Field(
-        None, description="On a surface that faces the light, in lx."
+        default=None,
+        description="On a surface that faces the light, in lx.",
     )
     angular_diameter_degrees: Annotated[float, Field(ge=0, le=90)] = Field(
-        0.0, description="Apparent diameter in degrees (the sun: 0.53); 0: a point."
+        default=0.0,
+        description="Apparent diameter in degrees (the sun: 0.53); 0: a point.",
     )
 
 
 class _Dome(LampTable):
     kinds_of_light: ClassVar[tuple[str, ...]] = ("illuminance_lux",)
 
-    up: Direction = Field((0.0, 1.0, 0.0), description="The zenith, world.")
+    up: Direction = Field(
+        default=(0.0, 1.0, 0.0),
+        description="The zenith, world.",
+    )
     illuminance_lux: NonNegative | None = Field(
-        None, description="From the sky on a surface that faces the zenith, in lx."
+        default=None,
+        description="From the sky on a surface that faces the zenith, in lx.",
     )
 
 
@@ -206,7 +249,8 @@ class HemisphereTable(_Dome):
         description="From the ground on a surface that faces straight down, in lx."
     )
     ground_rgb: tuple[NonNegative, NonNegative, NonNegative] | None = Field(
-        None, description="Linear Rec.709 factors of the ground's light; default: as the sky's."
+        default=None,
+        description="Linear Rec.709 factors of the ground's light; default: as the sky's.",
     )
 
     @model_validator(mode="after")

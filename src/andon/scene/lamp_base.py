@@ -36,16 +36,33 @@ class LampKey(Table):
     """One keyframe of a lamp. Between keys, values run linearly; outside, they stay."""
 
     time_seconds: float = Field(description="Session time of the key in seconds.")
-    position: Vector | None = Field(None, description="Position in metres, world.")
-    direction: Direction | None = Field(
-        None, description="Direction, world; turns along the great circle between keys."
+    position: Vector | None = Field(
+        default=None,
+        description="Position in metres, world.",
     )
-    intensity_cd: NonNegative | None = Field(None, description="Luminous intensity in cd.")
-    flux_lm: NonNegative | None = Field(None, description="Luminous flux in lm.")
-    luminance_cd_m2: NonNegative | None = Field(None, description="Luminance in cd/m².")
-    illuminance_lux: NonNegative | None = Field(None, description="Illuminance in lx.")
+    direction: Direction | None = Field(
+        default=None,
+        description="Direction, world; turns along the great circle between keys.",
+    )
+    intensity_cd: NonNegative | None = Field(
+        default=None,
+        description="Luminous intensity in cd.",
+    )
+    flux_lm: NonNegative | None = Field(
+        default=None,
+        description="Luminous flux in lm.",
+    )
+    luminance_cd_m2: NonNegative | None = Field(
+        default=None,
+        description="Luminance in cd/m².",
+    )
+    illuminance_lux: NonNegative | None = Field(
+        default=None,
+        description="Illuminance in lx.",
+    )
     temperature_k: Annotated[float, Field(ge=1000, le=40000)] | None = Field(
-        None, description="Colour temperature in K, 1000…40000."
+        default=None,
+        description="Colour temperature in K, 1000…40000.",
     )
 
     @property
@@ -58,15 +75,22 @@ class LampKey(Table):
 class Shell(Table):
     """The translucent shell of a luminous body: lit from inside, it emits outside."""
 
-    radius_m: Positive | None = Field(None, description="Radius of a spherical shell in metres.")
-    mesh: Reference | None = Field(None, description="Mesh file of a shell of any other form.")
+    radius_m: Positive | None = Field(
+        default=None,
+        description="Radius of a spherical shell in metres.",
+    )
+    mesh: Reference | None = Field(
+        default=None,
+        description="Mesh file of a shell of any other form.",
+    )
     transmittance: FractionTriple = Field(
-        (0.5, 0.5, 0.5),
+        default=(0.5, 0.5, 0.5),
         description="Net diffuse transmittance t in [0, 1], interreflection included; one number "
         "or three channels.",
     )
     absorptance: Fraction = Field(
-        0.0, description="Share of the light that an open shell takes, [0, 1]; 1 − t at most."
+        default=0.0,
+        description="Share of the light that an open shell takes, [0, 1]; 1 − t at most.",
     )
 
     @model_validator(mode="after")
@@ -82,14 +106,25 @@ class Flicker(Table):
     """Irregular brightness S(t) of mean 1: candles, sun through leaves."""
 
     exponent: Annotated[float, Field(gt=1, le=3)] = Field(
-        1.8, description="z of the intermittent map S ← S + u·S^z mod 1; 1/f-like above 1.5."
+        default=1.8,
+        description="z of the intermittent map S ← S + u·S^z mod 1; 1/f-like above 1.5.",
     )
-    steps_per_second: Positive = Field(30.0, description="Iterations of the map per second.")
-    amount: Fraction = Field(1.0, description="0 steady … 1 the full swing of S.")
+    steps_per_second: Positive = Field(
+        default=30.0,
+        description="Iterations of the map per second.",
+    )
+    amount: Fraction = Field(
+        default=1.0,
+        description="0 steady … 1 the full swing of S.",
+    )
     gaps: Annotated[int, Field(ge=1, le=100_000)] = Field(
-        1, description="Independent flickers whose mean is taken (gaps between leaves)."
+        default=1,
+        description="Independent flickers whose mean is taken (gaps between leaves).",
     )
-    mask: Reference | None = Field(None, description="Picture of the gaps, white is open.")
+    mask: Reference | None = Field(
+        default=None,
+        description="Picture of the gaps, white is open.",
+    )
 
 
 class LampTable(Table):
@@ -98,31 +133,41 @@ class LampTable(Table):
     kinds_of_light: ClassVar[tuple[str, ...]] = ("intensity_cd", "flux_lm")
     light_required: ClassVar[bool] = True
 
-    name: Name = Field("", description="Unique name; default: the kind and a number.")
+    name: Name = Field(
+        default="",
+        description="Unique name; default: the kind and a number.",
+    )
     chromaticity_xy: tuple[Positive, Positive] | None = Field(
-        None, description="CIE 1931 chromaticity (x, y), x + y ≤ 1."
+        default=None,
+        description="CIE 1931 chromaticity (x, y), x + y ≤ 1.",
     )
     temperature_k: Annotated[float, Field(ge=1000, le=40000)] | None = Field(
-        None, description="Colour temperature in K, 1000…40000."
+        default=None,
+        description="Colour temperature in K, 1000…40000.",
     )
     rgb: tuple[NonNegative, NonNegative, NonNegative] | None = Field(
-        None,
+        default=None,
         description="Linear Rec.709 factors; only their ratio counts, the photometric value is "
         "the one stated.",
     )
     transport: Literal["direct", "baked", "direct+bounce"] = Field(
-        "direct", description="How its light gets to surfaces; never counted twice."
+        default="direct",
+        description="How its light gets to surfaces; never counted twice.",
     )
     in_probes: bool = Field(
-        False,
+        default=False,
         description="Captured by light probes; false for a lamp that lights objects directly.",
     )
-    flicker: Flicker | None = Field(None, description="Irregular brightness over time.")
+    flicker: Flicker | None = Field(
+        default=None,
+        description="Irregular brightness over time.",
+    )
     path: Reference | None = Field(
-        None, description="File of positions over time: CSV time_seconds, x_m, y_m, z_m, or TUM."
+        default=None,
+        description="File of positions over time: CSV time_seconds, x_m, y_m, z_m, or TUM.",
     )
     key: tuple[LampKey, ...] = Field(
-        (),
+        default=(),
         description="Keyframes, in the order of their times; they override the lamp's own values.",
     )
 
@@ -214,12 +259,16 @@ ShadowMapSize = Annotated[int, Field(ge=16, le=8192)]
 class Shadowing(Table):
     """Keys of lamps that cast shadows."""
 
-    shadow: bool = Field(True, description="The lamp casts shadows.")
+    shadow: bool = Field(
+        default=True,
+        description="The lamp casts shadows.",
+    )
     shadow_map_size: ShadowMapSize = Field(
-        1024, description="Texels along a side of the shadow map, 16…8192."
+        default=1024,
+        description="Texels along a side of the shadow map, 16…8192.",
     )
     shadow_filter: Literal["none", "linear", "pcf"] = Field(
-        "pcf",
+        default="pcf",
         description="How the shadow map is read: none (hard), linear (2×2), pcf (wider average).",
     )
 
@@ -228,6 +277,10 @@ class Shelled(Table):
     """Keys of point-like lamps."""
 
     visible_radius_m: NonNegative = Field(
-        0.0, description="Radius of the ball that is drawn in the picture, metres; 0: not drawn."
+        default=0.0,
+        description="Radius of the ball that is drawn in the picture, metres; 0: not drawn.",
     )
-    shell: Shell | None = Field(None, description="Translucent shell around the lamp.")
+    shell: Shell | None = Field(
+        default=None,
+        description="Translucent shell around the lamp.",
+    )

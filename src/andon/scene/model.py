@@ -26,21 +26,66 @@ class Scene(Table):
     scene are relative to and confined to; `file` is named in messages.
     """
 
-    scene: About = Field(About(), description="The session as a whole.")
-    rig: Rig | None = Field(None, description="One camera or two eyes.")
-    capture: Capture | None = Field(None, description="The pictures and what their numbers mean.")
-    surface: Surface | None = Field(None, description="The real geometry that receives light.")
-    ambient: Ambient | None = Field(None, description="E0, the light of the photograph.")
-    lamp: tuple[AnyLamp, ...] = Field((), description="[[lamp]]: what emits.")
-    baked: Baked | None = Field(None, description="Precomputed illuminance maps.")
-    probes: Probes | None = Field(None, description="Light probes.")
-    object: tuple[SceneObject, ...] = Field((), description="[[object]]: virtual objects.")
-    glass: tuple[Glass, ...] = Field((), description="[[glass]]: transparent bodies.")
-    observer: Observer = Field(Observer(), description="Whose eyes.")
-    gaze: Gaze | None = Field(None, description="Where the observer looks.")
-    atmosphere: Atmosphere = Field(Atmosphere(), description="What is in the air.")
-    glare: Glare | None = Field(None, description="Light scattered in the observer's eye.")
-    display: Display = Field(Display(), description="From luminance to the screen.")
+    scene: About = Field(
+        default=About(),
+        description="The session as a whole.",
+    )
+    rig: Rig | None = Field(
+        default=None,
+        description="One camera or two eyes.",
+    )
+    capture: Capture | None = Field(
+        default=None,
+        description="The pictures and what their numbers mean.",
+    )
+    surface: Surface | None = Field(
+        default=None,
+        description="The real geometry that receives light.",
+    )
+    ambient: Ambient | None = Field(
+        default=None,
+        description="E0, the light of the photograph.",
+    )
+    lamp: tuple[AnyLamp, ...] = Field(
+        default=(),
+        description="[[lamp]]: what emits.",
+    )
+    baked: Baked | None = Field(
+        default=None,
+        description="Precomputed illuminance maps.",
+    )
+    probes: Probes | None = Field(
+        default=None,
+        description="Light probes.",
+    )
+    object: tuple[SceneObject, ...] = Field(
+        default=(),
+        description="[[object]]: virtual objects.",
+    )
+    glass: tuple[Glass, ...] = Field(
+        default=(),
+        description="[[glass]]: transparent bodies.",
+    )
+    observer: Observer = Field(
+        default=Observer(),
+        description="Whose eyes.",
+    )
+    gaze: Gaze | None = Field(
+        default=None,
+        description="Where the observer looks.",
+    )
+    atmosphere: Atmosphere = Field(
+        default=Atmosphere(),
+        description="What is in the air.",
+    )
+    glare: Glare | None = Field(
+        default=None,
+        description="Light scattered in the observer's eye.",
+    )
+    display: Display = Field(
+        default=Display(),
+        description="From luminance to the screen.",
+    )
 
     _folder: Path = PrivateAttr(default=Path())
     _file: str = PrivateAttr(default="scene.toml")

@@ -43,19 +43,35 @@ _DISTORTION_LENGTHS = {"pinhole": (0, 4, 5, 8, 12, 14), "fisheye": (0, 4), "latl
 class About(Table):
     """The session as a whole."""
 
-    name: str = Field("scene", description="Title for reports.")
+    name: str = Field(
+        default="scene",
+        description="Title for reports.",
+    )
     photometry: Literal["absolute", "relative"] = Field(
-        "absolute",
+        default="absolute",
         description="Whether lux and cd/m² are absolute, or relative to the light of the "
         "photograph; every number that leaves the program carries this word.",
     )
     unit: Literal["m", "cm", "mm", "in", "ft"] = Field(
-        "m", description="Unit of mesh files that do not say (OBJ); the scene file is in metres."
+        default="m",
+        description="Unit of mesh files that do not say (OBJ); the scene file is in metres.",
     )
-    up: Literal["y", "z"] = Field("y", description="Up axis of mesh files that do not say (OBJ).")
-    seed: Count = Field(0, description="Seed from which every random stream is derived.")
-    duration_seconds: NonNegative = Field(0.0, description="Length in seconds; 0 is a still.")
-    frames_per_second: Positive = Field(30.0, description="Frames per second of a sequence.")
+    up: Literal["y", "z"] = Field(
+        default="y",
+        description="Up axis of mesh files that do not say (OBJ).",
+    )
+    seed: Count = Field(
+        default=0,
+        description="Seed from which every random stream is derived.",
+    )
+    duration_seconds: NonNegative = Field(
+        default=0.0,
+        description="Length in seconds; 0 is a still.",
+    )
+    frames_per_second: Positive = Field(
+        default=30.0,
+        description="Frames per second of a sequence.",
+    )
 
     @property
     def metres_per_unit(self) -> float:
@@ -67,33 +83,62 @@ class Camera(Table):
     """Intrinsics and pose of one camera or eye, here or in a camera file."""
 
     file: Reference | None = Field(
-        None, description="Camera file; excludes the intrinsics below, not the pose."
+        default=None,
+        description="Camera file; excludes the intrinsics below, not the pose.",
     )
     projection: Literal["pinhole", "fisheye", "latlong"] = Field(
-        "pinhole", description="Which direction a pixel has."
+        default="pinhole",
+        description="Which direction a pixel has.",
     )
-    width: Pixels | None = Field(None, description="Pixels; default: the picture's.")
-    height: Pixels | None = Field(None, description="Pixels; default: the picture's.")
-    fx: Positive | None = Field(None, description="Focal length along a row in pixels.")
-    fy: Positive | None = Field(None, description="Focal length along a column; default: fx.")
-    cx: float | None = Field(None, description="Principal point, column; default: the middle.")
-    cy: float | None = Field(None, description="Principal point, row; default: the middle.")
+    width: Pixels | None = Field(
+        default=None,
+        description="Pixels; default: the picture's.",
+    )
+    height: Pixels | None = Field(
+        default=None,
+        description="Pixels; default: the picture's.",
+    )
+    fx: Positive | None = Field(
+        default=None,
+        description="Focal length along a row in pixels.",
+    )
+    fy: Positive | None = Field(
+        default=None,
+        description="Focal length along a column; default: fx.",
+    )
+    cx: float | None = Field(
+        default=None,
+        description="Principal point, column; default: the middle.",
+    )
+    cy: float | None = Field(
+        default=None,
+        description="Principal point, row; default: the middle.",
+    )
     hfov_degrees: Annotated[float, Field(gt=0, le=360)] | None = Field(
-        None, description="Full horizontal angle instead of fx, degrees; below 180 for pinhole."
+        default=None,
+        description="Full horizontal angle instead of fx, degrees; below 180 for pinhole.",
     )
     distortion: tuple[float, ...] = Field(
-        (), description="OpenCV coefficients: pinhole k1 k2 p1 p2 [k3 …], fisheye k1 k2 k3 k4."
+        default=(),
+        description="OpenCV coefficients: pinhole k1 k2 p1 p2 [k3 …], fisheye k1 k2 k3 k4.",
     )
     world_from_camera: Pose | None = Field(
-        None,
+        default=None,
         description="4×4 rigid pose (OpenCV axes), row by row; with a trajectory: rig_from_camera. "
         "Default: the origin, looking along −Z, +Y up.",
     )
     position: Vector | None = Field(
-        None, description="Position in metres, with `look_at`, instead of world_from_camera."
+        default=None,
+        description="Position in metres, with `look_at`, instead of world_from_camera.",
     )
-    look_at: Vector | None = Field(None, description="Point in metres that is in the middle.")
-    up: Direction = Field((0.0, 1.0, 0.0), description="Which way is up for `look_at`.")
+    look_at: Vector | None = Field(
+        default=None,
+        description="Point in metres that is in the middle.",
+    )
+    up: Direction = Field(
+        default=(0.0, 1.0, 0.0),
+        description="Which way is up for `look_at`.",
+    )
 
     @model_validator(mode="after")
     def _check_camera(self) -> Camera:
@@ -187,21 +232,38 @@ class Trajectory(Table):
 
     file: Reference = Field(description="Trajectory file.")
     format: Literal["tum"] = Field(
-        "tum", description="tum: lines of time_seconds tx ty tz qx qy qz qw, world_from_rig."
+        default="tum",
+        description="tum: lines of time_seconds tx ty tz qx qy qz qw, world_from_rig.",
     )
     time_offset_seconds: float = Field(
-        0.0, description="Added to the file's times to get session time, seconds."
+        default=0.0,
+        description="Added to the file's times to get session time, seconds.",
     )
 
 
 class Rig(Table):
     """One camera or two eyes."""
 
-    kind: Literal["mono", "stereo"] = Field("mono", description="One view or two.")
-    camera: Camera | None = Field(None, description="The camera of a mono rig.")
-    left: Camera | None = Field(None, description="The left eye of a stereo rig.")
-    right: Camera | None = Field(None, description="The right eye of a stereo rig.")
-    trajectory: Trajectory | None = Field(None, description="Poses over time.")
+    kind: Literal["mono", "stereo"] = Field(
+        default="mono",
+        description="One view or two.",
+    )
+    camera: Camera | None = Field(
+        default=None,
+        description="The camera of a mono rig.",
+    )
+    left: Camera | None = Field(
+        default=None,
+        description="The left eye of a stereo rig.",
+    )
+    right: Camera | None = Field(
+        default=None,
+        description="The right eye of a stereo rig.",
+    )
+    trajectory: Trajectory | None = Field(
+        default=None,
+        description="Poses over time.",
+    )
 
     @model_validator(mode="after")
     def _check_eyes(self) -> Rig:
@@ -228,8 +290,14 @@ class ResponseTable(Table):
     """How the camera encodes light."""
 
     kind: Literal["linear", "srgb", "gamma", "curve"] = Field(description="Family of curves.")
-    gamma: Positive | None = Field(None, description="γ of kind gamma: encoded = linear^(1/γ).")
-    file: Reference | None = Field(None, description="Response file of kind curve.")
+    gamma: Positive | None = Field(
+        default=None,
+        description="γ of kind gamma: encoded = linear^(1/γ).",
+    )
+    file: Reference | None = Field(
+        default=None,
+        description="Response file of kind curve.",
+    )
 
     @model_validator(mode="after")
     def _check_response(self) -> ResponseTable:
@@ -250,26 +318,41 @@ class PoseSource(Table):
     """Where the rig's pose comes from while capturing."""
 
     kind: Literal["fixed", "trajectory", "marker", "board", "openxr"] = Field(
-        "fixed", description="fixed: [rig]; marker: one ArUco marker; board: ChArUco or AprilTag."
+        default="fixed",
+        description="fixed: [rig]; marker: one ArUco marker; board: ChArUco or AprilTag.",
     )
     dictionary: str = Field(
-        "DICT_ARUCO_ORIGINAL", description="OpenCV's name of the marker family."
+        default="DICT_ARUCO_ORIGINAL",
+        description="OpenCV's name of the marker family.",
     )
-    marker_length_m: Positive | None = Field(None, description="Side of a marker in metres.")
+    marker_length_m: Positive | None = Field(
+        default=None,
+        description="Side of a marker in metres.",
+    )
     square_length_m: Positive | None = Field(
-        None, description="Side of a board's square in metres."
+        default=None,
+        description="Side of a board's square in metres.",
     )
     board_columns: Annotated[int, Field(ge=1, le=1000)] | None = Field(
-        None, description="Squares of the board along a row."
+        default=None,
+        description="Squares of the board along a row.",
     )
     board_rows: Annotated[int, Field(ge=1, le=1000)] | None = Field(
-        None, description="Squares of the board along a column."
+        default=None,
+        description="Squares of the board along a column.",
     )
     world_from_marker: Pose | None = Field(
-        None, description="4×4 rigid pose of the marker or board; default: the world's origin."
+        default=None,
+        description="4×4 rigid pose of the marker or board; default: the world's origin.",
     )
-    hold_seconds: NonNegative = Field(0.5, description="Last pose is held this long after loss.")
-    fade_seconds: NonNegative = Field(0.5, description="Then the added light fades, seconds.")
+    hold_seconds: NonNegative = Field(
+        default=0.5,
+        description="Last pose is held this long after loss.",
+    )
+    fade_seconds: NonNegative = Field(
+        default=0.5,
+        description="Then the added light fades, seconds.",
+    )
 
 
 def _response_from_text(value: Any) -> Any:
@@ -304,23 +387,40 @@ class Capture(Table):
     """The pictures and what their numbers mean."""
 
     source: AnySource | None = Field(
-        None,
+        default=None,
         description="Picture, folder, video or session; `device:0`, `openxr:` or `simulated:`; "
         "or { left = …, right = … }.",
     )
     response: AnyResponse | None = Field(
-        None,
+        default=None,
         description='"linear", "srgb", "gamma:2.2", or { kind, gamma, file }. Default: linear for '
         "EXR and HDR files, srgb for others.",
     )
     luminance_per_unit: Positive | None = Field(
-        None, description="cd/m² of linear value 1. Default: 1 (then E0 sets the scale)."
+        default=None,
+        description="cd/m² of linear value 1. Default: 1 (then E0 sets the scale).",
     )
     clipped_luminance_cd_m2: Positive | None = Field(
-        None, description="cd/m² assumed where the sensor clipped; default: as captured."
+        default=None,
+        description="cd/m² assumed where the sensor clipped; default: as captured.",
     )
-    undistort: bool = Field(True, description="Remove lens distortion; else draw with it.")
-    depth: Reference | None = Field(None, description="Depth that comes with each frame.")
-    pose: PoseSource = Field(PoseSource(), description="Where the pose comes from.")
-    gaze: Reference | None = Field(None, description="Gaze recorded with the frames; see [gaze].")
-    noise: Fraction = Field(0.0, description="Of a simulated camera: noise σ relative to white.")
+    undistort: bool = Field(
+        default=True,
+        description="Remove lens distortion; else draw with it.",
+    )
+    depth: Reference | None = Field(
+        default=None,
+        description="Depth that comes with each frame.",
+    )
+    pose: PoseSource = Field(
+        default=PoseSource(),
+        description="Where the pose comes from.",
+    )
+    gaze: Reference | None = Field(
+        default=None,
+        description="Gaze recorded with the frames; see [gaze].",
+    )
+    noise: Fraction = Field(
+        default=0.0,
+        description="Of a simulated camera: noise σ relative to white.",
+    )

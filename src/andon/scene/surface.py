@@ -47,24 +47,38 @@ class Depth(Table):
 
     file: Reference = Field(description="The depth image.")
     kind: Literal["z", "distance", "disparity"] = Field(
-        "z", description="z: along the optical axis; distance: along the ray; disparity: pixels."
+        default="z",
+        description="z: along the optical axis; distance: along the ray; disparity: pixels.",
     )
     scale_to_m: Positive = Field(
-        1.0, description="Metres (disparity: pixels) per unit of the file; 0.001 for millimetres."
+        default=1.0,
+        description="Metres (disparity: pixels) per unit of the file; 0.001 for millimetres.",
     )
-    baseline_m: Positive | None = Field(None, description="Of disparity: distance of the cameras.")
+    baseline_m: Positive | None = Field(
+        default=None,
+        description="Of disparity: distance of the cameras.",
+    )
     focal_px: Positive | None = Field(
-        None, description="Of disparity: focal length in pixels; default: the camera's fx."
+        default=None,
+        description="Of disparity: focal length in pixels; default: the camera's fx.",
     )
-    doffs_px: float = Field(0.0, description="Of disparity: x difference of the principal points.")
+    doffs_px: float = Field(
+        default=0.0,
+        description="Of disparity: x difference of the principal points.",
+    )
     invalid: Annotated[
         tuple[Annotated[float, Field(allow_inf_nan=True)], ...], AfterValidator(_drop_nan)
-    ] = Field((), description="Values of the file that mean a hole; NaN, ±inf and ≤ 0 always do.")
+    ] = Field(
+        default=(),
+        description="Values of the file that mean a hole; NaN, ±inf and ≤ 0 always do.",
+    )
     max_jump: Annotated[float, Field(gt=0, le=1)] = Field(
-        0.05, description="Relative step between neighbours that cuts the surface, (0, 1]."
+        default=0.05,
+        description="Relative step between neighbours that cuts the surface, (0, 1].",
     )
     thickness_m: Positive | None = Field(
-        None, description="Closes objects at their back for shadows, metres; default: open."
+        default=None,
+        description="Closes objects at their back for shadows, metres; default: open.",
     )
 
     @model_validator(mode="after")
@@ -83,11 +97,21 @@ class Depth(Table):
 class SurfaceResponse(Table):
     """Measured relation of illuminance and camera RGB of one material."""
 
-    material: Name = Field("*", description="Name of the material in the mesh; * is all others.")
-    file: Reference | None = Field(None, description="Response file, instead of the two lists.")
-    illuminance_lux: tuple[NonNegative, ...] = Field((), description="Rising illuminances in lx.")
+    material: Name = Field(
+        default="*",
+        description="Name of the material in the mesh; * is all others.",
+    )
+    file: Reference | None = Field(
+        default=None,
+        description="Response file, instead of the two lists.",
+    )
+    illuminance_lux: tuple[NonNegative, ...] = Field(
+        default=(),
+        description="Rising illuminances in lx.",
+    )
     rgb: tuple[tuple[NonNegative, NonNegative, NonNegative], ...] = Field(
-        (), description="Linear camera RGB at each of them, rising in every channel."
+        default=(),
+        description="Linear camera RGB at each of them, rising in every channel.",
     )
 
     @model_validator(mode="after")
@@ -119,32 +143,43 @@ AnyDepth = Annotated[
 class Surface(Table):
     """The real geometry that receives virtual light: a mesh, a depth image, or normals alone."""
 
-    mesh: Reference | None = Field(None, description="Mesh file (OBJ, glTF) in world space.")
-    depth: AnyDepth | None = Field(None, description="Depth image: a path or [surface.depth].")
+    mesh: Reference | None = Field(
+        default=None,
+        description="Mesh file (OBJ, glTF) in world space.",
+    )
+    depth: AnyDepth | None = Field(
+        default=None,
+        description="Depth image: a path or [surface.depth].",
+    )
     normals: Reference | None = Field(
-        None,
+        default=None,
         description="Picture of normals. Alone: a surface without positions, for distant lamps "
         "only; with depth: instead of the depth's own normals.",
     )
     normals_axes: Literal["opencv", "opengl", "world"] = Field(
-        "opencv",
+        default="opencv",
         description="Axes of `normals`: camera with y down, z forward (opencv); y up, z backward "
         "(opengl); world.",
     )
     world_from_mesh: Transform | None = Field(
-        None, description="4×4 affine placement of the mesh, row by row."
+        default=None,
+        description="4×4 affine placement of the mesh, row by row.",
     )
     reflectance: FractionTriple | None = Field(
-        None, description="Diffuse reflectance ρ in [0, 1], number or three; default: the mesh's."
+        default=None,
+        description="Diffuse reflectance ρ in [0, 1], number or three; default: the mesh's.",
     )
     reflectance_map: Reference | None = Field(
-        None, description="Picture of ρ in the view, linear, instead of `reflectance`."
+        default=None,
+        description="Picture of ρ in the view, linear, instead of `reflectance`.",
     )
     occluder_triangles: Count = Field(
-        30000, description="Depth meshes are thinned to this many triangles for shadows; 0: all."
+        default=30000,
+        description="Depth meshes are thinned to this many triangles for shadows; 0: all.",
     )
     response: tuple[SurfaceResponse, ...] = Field(
-        (), description="[[surface.response]] per material."
+        default=(),
+        description="[[surface.response]] per material.",
     )
 
     @model_validator(mode="after")
@@ -168,23 +203,32 @@ class Ambient(Table):
     """E0, the light in which the pictures were taken."""
 
     illuminance_lux: PositiveTriple | None = Field(
-        None, description="E0 in lx, the same everywhere: a number or three channels, > 0."
+        default=None,
+        description="E0 in lx, the same everywhere: a number or three channels, > 0.",
     )
-    map: Reference | None = Field(None, description="EXR of E0 in lx for each pixel of the view.")
-    probes: bool = Field(False, description="E0 from the light probes of [probes].")
+    map: Reference | None = Field(
+        default=None,
+        description="EXR of E0 in lx for each pixel of the view.",
+    )
+    probes: bool = Field(
+        default=False,
+        description="E0 from the light probes of [probes].",
+    )
     dimming: NonNegativeTriple = Field(
-        (1.0, 1.0, 1.0), description="Factor on E0 in the result, number or three; 1: unchanged."
+        default=(1.0, 1.0, 1.0),
+        description="Factor on E0 in the result, number or three; 1: unchanged.",
     )
     dimming_mode: Literal["linear", "paper"] = Field(
-        "linear",
+        default="linear",
         description="linear: dimming scales light; paper: it scales encoded RGB (not physical).",
     )
     source: tuple[AnyLamp, ...] = Field(
-        (),
+        default=(),
         description="[[ambient.source]]: real lamps and windows that are part of E0, as [[lamp]].",
     )
     removed: tuple[Name, ...] = Field(
-        (), description="Names of sources that are switched off in the result."
+        default=(),
+        description="Names of sources that are switched off in the result.",
     )
 
     @model_validator(mode="after")
@@ -201,37 +245,56 @@ class Baked(Table):
     """Precomputed illuminance maps."""
 
     folder: Reference = Field(description="Folder of the maps.")
-    lamps: tuple[Name, ...] = Field((), description="Names of the lamps that are in the maps.")
+    lamps: tuple[Name, ...] = Field(
+        default=(),
+        description="Names of the lamps that are in the maps.",
+    )
     depth_tolerance_m: Positive = Field(
-        0.02, description="A map is valid where its depth differs by less than this, metres."
+        default=0.02,
+        description="A map is valid where its depth differs by less than this, metres.",
     )
 
 
 class ProbePlace(Table):
     """A probe placed by hand."""
 
-    name: Name = Field("probe", description="For messages.")
+    name: Name = Field(
+        default="probe",
+        description="For messages.",
+    )
     position: Vector = Field(description="Where it counts, metres, world.")
     capture_position: Vector | None = Field(
-        None, description="Where it is captured, metres; default: its position."
+        default=None,
+        description="Where it is captured, metres; default: its position.",
     )
     role: Literal["general", "sky", "bounce", "bleeding"] = Field(
-        "general", description="What it is there for."
+        default="general",
+        description="What it is there for.",
     )
-    range_m: Positive | None = Field(None, description="Farthest surface captured, metres.")
+    range_m: Positive | None = Field(
+        default=None,
+        description="Farthest surface captured, metres.",
+    )
 
 
 class Placement(Table):
     """How probes are placed before a bake."""
 
     kind: Literal["hand", "nodes", "vertices", "lattice", "panoramas", "automatic"] = Field(
-        "hand",
+        default="hand",
         description="hand: [[probes.place]]; nodes: of a glTF file; automatic: pruned lattice.",
     )
-    file: Reference | None = Field(None, description="glTF of the nodes, or list of panoramas.")
-    spacing_m: Positive | None = Field(None, description="Of a lattice, metres.")
+    file: Reference | None = Field(
+        default=None,
+        description="glTF of the nodes, or list of panoramas.",
+    )
+    spacing_m: Positive | None = Field(
+        default=None,
+        description="Of a lattice, metres.",
+    )
     error: Positive | None = Field(
-        None, description="Of automatic placement: largest relative irradiance error."
+        default=None,
+        description="Of automatic placement: largest relative irradiance error.",
     )
 
 
@@ -239,21 +302,43 @@ class Probes(Table):
     """Light probes."""
 
     volume: Reference = Field(description="The probe volume: a bake writes it, a frame reads it.")
-    zones: tuple[Name, ...] = Field((), description="Zones that are used; default: all.")
-    state: Name | None = Field(
-        None, description="State of the volume (day, night); default: its first."
+    zones: tuple[Name, ...] = Field(
+        default=(),
+        description="Zones that are used; default: all.",
     )
-    blend_state: Name | None = Field(None, description="A second state that is mixed in.")
-    blend: Fraction = Field(0.0, description="0: state … 1: blend_state.")
-    placement: Placement = Field(Placement(), description="Where probes go.")
-    place: tuple[ProbePlace, ...] = Field((), description="[[probes.place]]: placed by hand.")
+    state: Name | None = Field(
+        default=None,
+        description="State of the volume (day, night); default: its first.",
+    )
+    blend_state: Name | None = Field(
+        default=None,
+        description="A second state that is mixed in.",
+    )
+    blend: Fraction = Field(
+        default=0.0,
+        description="0: state … 1: blend_state.",
+    )
+    placement: Placement = Field(
+        default=Placement(),
+        description="Where probes go.",
+    )
+    place: tuple[ProbePlace, ...] = Field(
+        default=(),
+        description="[[probes.place]]: placed by hand.",
+    )
     cube_size_px: Annotated[int, Field(ge=8, le=256)] = Field(
-        128, description="Side of the captured cube maps, 8…256 pixels."
+        default=128,
+        description="Side of the captured cube maps, 8…256 pixels.",
     )
     order: Annotated[int, Field(ge=0, le=4)] = Field(
-        2, description="Highest band of the spherical harmonics, 0…4."
+        default=2,
+        description="Highest band of the spherical harmonics, 0…4.",
     )
     bounces: Annotated[int, Field(ge=0, le=16)] = Field(
-        1, description="Times that light is reflected."
+        default=1,
+        description="Times that light is reflected.",
     )
-    visibility: bool = Field(True, description="Walls hide probes behind them.")
+    visibility: bool = Field(
+        default=True,
+        description="Walls hide probes behind them.",
+    )

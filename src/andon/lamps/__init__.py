@@ -1,1 +1,47 @@
-"""(to come)"""
+"""What emits: lamps in photometric units, resolved for one moment of a scene.
+
+One lamp is one thing for every stage: relighting's illuminance, glass's highlight and glare's
+source are the same candela. So lamps are resolved once per frame, from the scene, into frozen
+values without any choice of unit or colour left: three linear Rec.709 channels in cd (lamps with
+a place) or lx (light from afar), whose photometric value is the one that was stated.
+
+=============== ============================== ==========================================
+choice          taken                          instead of
+=============== ============================== ==========================================
+falloff         inverse square, no cut-off     a range with a smooth end, which loses flux
+spot            glTF's cone                    Phong's cosⁿ: never ends, no second angle
+flux            integral of the actual cone    the "4π" or "π" that engines assume
+colour          keeps the photometric value    RGB × intensity, where blue means darker
+colour temp.    Planck's law, one rule         a fit with a seam between two families
+=============== ============================== ==========================================
+
+Sources: KHR_lights_punctual (Khronos); Wyman, Sloan & Shirley 2013; ITU-R BT.709-6.
+"""
+
+from __future__ import annotations
+
+from andon.lamps.colour import rgb_factors
+from andon.lamps.model import (
+    DirectionalLamp,
+    HemisphereLamp,
+    Lamp,
+    PointLamp,
+    Shadow,
+    SkyLamp,
+    SpotLamp,
+    resolve_lamps,
+)
+from andon.lamps.parse import parse_lamp_option
+
+__all__ = [
+    "DirectionalLamp",
+    "HemisphereLamp",
+    "Lamp",
+    "PointLamp",
+    "Shadow",
+    "SkyLamp",
+    "SpotLamp",
+    "parse_lamp_option",
+    "resolve_lamps",
+    "rgb_factors",
+]

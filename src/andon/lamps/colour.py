@@ -1,0 +1,158 @@
+"""Colour of lamps: chromaticity and colour temperature to linear Rec.709 factors.
+
+One rule for colour temperature: **Planck's law at every temperature**, integrated with the CIE
+1931 2° observer. Incandescent lamps and flames are near-Planckian; a lamp sold as "6500 K" is
+near it too, and one rule has no step where two families would meet. A *daylight* lamp is the
+exception: CIE D illuminants lie 0.003 to 0.005 (Duv) on the green side of the Planckian locus, so
+D65 is given as ``chromaticity_xy = [0.3127, 0.3290]``, not as 6504 K.
+
+The observer is the published fit of Wyman, Sloan & Shirley, "Simple Analytic Approximations to
+the CIE XYZ Color Matching Functions", JCGT 2(2), 2013, eq. 4 and table 1 (multi-lobe). Measured
+against the tabulated observer, chromaticities of 1000…40000 K come out within 0.002 in x and y;
+illuminant A (2856 K) is (0.4476, 0.4074), the fit gives that within 0.001.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.errors import InputError
+from andon.quantities import LUMINANCE_WEIGHTS
+
+__all__ = [
+    "NEUTRAL",
+    "chromaticity_of_temperature",
+    "colour_matching_functions",
+    "factors_from_chromaticity",
+    "factors_from_rgb",
+    "factors_from_temperature",
+    "rgb_factors",
+]
+
+Float = NDArray[np.float64]
+
+TEMPERATURE_RANGE_K = (1000.0, 40000.0)
+
+# c₂ = h·c/k_B in m·K, from the exact SI constants of 2019. (Illuminant A was defined with an
+# older c₂: its 2856 K is 2855.5 K here; the chromaticity moves by less than 1e-4.)
+SECOND_RADIATION_CONSTANT = 6.62607015e-34 * 299792458 / 1.380649e-23
+
+# x, y of the primaries and of D65: ITU-R BT.709-6, table 1.
+_PRIMARIES = np.array([[0.640, 0.330], [0.300, 0.600], [0.150, 0.060]])
+_WHITE = np.array([0.3127, 0.3290])
+
+NEUTRAL: Float = np.ones(3)
+NEUTRAL.flags.writeable = False
+
+# Wyman et al. 2013, table 1: rows of (observer channel, height, centre nm, width below, above).
+_LOBES = (
+    (0, 0.362, 442.0, 0.0624, 0.0374),
+    (0, 1.056, 599.8, 0.0264, 0.0323),
+    (0, -0.065, 501.1, 0.0490, 0.0382),
+    (1, 0.821, 568.8, 0.0213, 0.0247),
+    (1, 0.286, 530.9, 0.0613, 0.0322),
+    (2, 1.217, 437.0, 0.0845, 0.0278),
+    (2, 0.681, 459.0, 0.0385, 0.0725),
+)
+
+
+def colour_matching_functions(wavelengths_nm: NDArray[Any], /) -> Float:
+    """x̄, ȳ, z̄ (..., 3) of the CIE 1931 2° observer at wavelengths (...) in nm.
+
+    Wyman, Sloan & Shirley 2013, eq. 4: sums of Gaussians, each with two widths.
+    """
+    matching = np.zeros((*np.shape(wavelengths_nm), 3))
+    for channel, height, centre, below, above in _LOBES:
+        offset = np.asarray(wavelengths_nm, np.float64) - centre
+        scaled = offset * np.where(offset < 0, below, above)
+        matching[..., channel] += height * np.exp(-0.5 * scaled**2)
+    return matching
+
+
+def _xyz(chromaticity: NDArray[Any]) -> Float:
+    """X, Y, Z (..., 3) with Y = 1 of chromaticities (..., 2)."""
+    x, y = chromaticity[..., 0], chromaticity[..., 1]
+    return np.stack([x / y, np.ones_like(y), (1 - x - y) / y], axis=-1)
+
+
+def _rgb_from_xyz() -> Float:
+    """(3, 3), from the primaries and the white (SMPTE RP 177, section 3.3)."""
+    primaries = _xyz(_PRIMARIES).T
+    return np.linalg.inv(primaries * np.linalg.solve(primaries, _xyz(_WHITE)))
+
+
+_RGB_FROM_XYZ = _rgb_from_xyz()
+
+
+def factors_from_rgb(rgb: NDArray[Any], /) -> Float:
+    """Factors (3,) with 0.2126 R + 0.7152 G + 0.0722 B = 1 in the ratio of `rgb` (3,).
+
+    Negative channels (a colour outside Rec.709) become 0 *before* the normalisation: the
+    photometric value is kept, the chromaticity moves to the edge of the gamut.
+    """
+    clipped = np.maximum(np.asarray(rgb, np.float64), 0)
+    largest = clipped.max()
+    if not (np.isfinite(largest) and largest > 0):
+        raise InputError(f"must be finite with a channel > 0, got {list(rgb)}", field="rgb")
+    clipped = clipped / largest  # so that the sum neither overflows nor underflows
+    return clipped / (clipped @ LUMINANCE_WEIGHTS)
+
+
+def factors_from_chromaticity(chromaticity_xy: NDArray[Any] | tuple[float, float], /) -> Float:
+    """Rec.709 factors (3,) of photometric value 1 of a CIE 1931 chromaticity (x, y), y > 0."""
+    x, y = chromaticity_xy
+    if not (np.isfinite(x) and np.isfinite(y) and x >= 0 and y > 0 and x + y <= 1):
+        raise InputError(
+            f"needs x ≥ 0, y > 0, x + y ≤ 1, got ({x:g}, {y:g})", field="chromaticity_xy"
+        )
+    if np.allclose((x, y), _WHITE, rtol=0, atol=1e-12):
+        return NEUTRAL.copy()  # D65 is neutral exactly, not up to rounding
+    return factors_from_rgb(_RGB_FROM_XYZ @ _xyz(np.array([x, y], dtype=np.float64)))
+
+
+@lru_cache(maxsize=256)
+def chromaticity_of_temperature(temperature_k: float, /) -> tuple[float, float]:
+    """CIE 1931 (x, y) of a Planckian radiator; 1000…40000 K.
+
+    Planck's law per wavelength, λ⁻⁵/(exp(c₂/(λT)) − 1), summed in 1 nm steps from 360 to 830 nm,
+    the range of the CIE observer. Raises `InputError` outside the range.
+    """
+    lowest, highest = TEMPERATURE_RANGE_K
+    if not lowest <= temperature_k <= highest:
+        raise InputError(
+            f"must be {lowest:g}…{highest:g} K, got {temperature_k:g}", field="temperature_k"
+        )
+    wavelengths_nm = np.arange(360.0, 831.0)
+    metres = wavelengths_nm * 1e-9
+    spectrum = wavelengths_nm**-5.0 / np.expm1(SECOND_RADIATION_CONSTANT / (metres * temperature_k))
+    x, y, z = spectrum @ colour_matching_functions(wavelengths_nm)
+    return float(x / (x + y + z)), float(y / (x + y + z))
+
+
+def factors_from_temperature(temperature_k: float, /) -> Float:
+    """Rec.709 factors (3,) of photometric value 1 of a Planckian radiator; 1000…40000 K."""
+    return factors_from_chromaticity(chromaticity_of_temperature(float(temperature_k)))
+
+
+def rgb_factors(
+    *,
+    chromaticity_xy: tuple[float, float] | None = None,
+    temperature_k: float | None = None,
+    rgb: tuple[float, float, float] | None = None,
+) -> Float:
+    """Factors (3,) that turn a photometric value into a triple of channels; neutral by default.
+
+    0.2126 R + 0.7152 G + 0.0722 B of the factors is 1, so the triple has the photometric value.
+    """
+    given = [value for value in (chromaticity_xy, temperature_k, rgb) if value is not None]
+    if len(given) > 1:
+        raise InputError("at most one of chromaticity_xy, temperature_k, rgb is allowed")
+    if chromaticity_xy is not None:
+        return factors_from_chromaticity(chromaticity_xy)
+    if temperature_k is not None:
+        return factors_from_temperature(temperature_k)
+    return factors_from_rgb(np.array(rgb)) if rgb is not None else NEUTRAL.copy()

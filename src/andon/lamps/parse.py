@@ -1,0 +1,116 @@
+"""One lamp in one line: ``kind=point,position=0.5,0.2,-1.5,flux_lm=800,temperature_k=2700``.
+
+::
+
+    option = pair *( "," pair )          pair = key "=" value
+    value  = text | number *( sep number ) | "[" … "]"        sep = "," | ";" | space
+    key    = name *( "." name )          shell.radius_m=0.1
+
+A piece between commas without an equals sign continues the value before it.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from andon.errors import InputError, nearest_name
+
+__all__ = ["parse_lamp_option"]
+
+MAX_OPTION_CHARACTERS = 10_000
+
+
+def parse_lamp_option(text: str, /, *, field: str = "--lamp") -> dict[str, Any]:
+    """The [[lamp]] table of a lamp option, ready for `scene_from_dict`.
+
+    Keys and kinds are checked here, with the nearest known name; values by the scene. `field` is
+    named in messages. Raises `InputError`.
+    """
+    if len(text) > MAX_OPTION_CHARACTERS:
+        raise InputError(f"must have at most {MAX_OPTION_CHARACTERS} characters", field=field)
+    table: dict[str, Any] = {}
+    for key, value in _pairs(text, field):
+        _put(table, key, _parsed(value, f"{field} {key}"), field)
+    if "kind" not in table:
+        raise InputError("kind is required", field=field, remedy="begin with kind=point,…")
+    _check_keys(table, field)
+    return table
+
+
+def _pairs(text: str, field: str) -> list[tuple[str, str]]:
+    pairs: list[tuple[str, str]] = []
+    for piece in text.split(","):
+        key, equals, value = piece.partition("=")
+        if equals:
+            pairs.append((key.strip(), value.strip()))
+        elif pairs:
+            key, value = pairs[-1]
+            pairs[-1] = (key, f"{value},{piece.strip()}")
+        else:
+            raise InputError(
+                f"must be key=value,key=value…, got {piece[:60]!r}",
+                field=field,
+                remedy="for example kind=point,position=0,1,-2,flux_lm=800",
+            )
+    return pairs
+
+
+def _put(table: dict[str, Any], key: str, value: Any, field: str) -> None:
+    *parents, last = key.split(".")
+    for parent in parents:
+        entry = table.setdefault(parent, {})
+        if not isinstance(entry, dict):
+            raise InputError(f"{parent} has a value already", field=f"{field} {key[:60]}")
+        table = entry
+    if last in table:
+        raise InputError("is given twice", field=f"{field} {key[:60]}")
+    table[last] = value
+
+
+def _parsed(text: str, field: str) -> Any:
+    """A number, true or false, a list of these, or the text itself."""
+    if text == "":
+        raise InputError("has no value", field=field[:80])
+    bracketed = text.startswith("[") and text.endswith("]")
+    parts = [part for part in re.split(r"[,;\s]+", text.strip("[]").strip()) if part]
+    values = [_scalar(part) for part in parts]
+    if bracketed:
+        return values
+    if len(values) == 1:
+        return values[0]
+    # A text with spaces or commas (a name, a file) is a text; a list has numbers only.
+    return text if any(isinstance(value, str) for value in values) else values
+
+
+def _scalar(text: str) -> Any:
+    if text in ("true", "false"):
+        return text == "true"
+    for number in (int, float):
+        try:
+            return number(text)
+        except ValueError:
+            continue
+    return text
+
+
+def _check_keys(table: dict[str, Any], field: str) -> None:
+    from andon.scene.lamp import LAMP_KINDS
+
+    kind = table["kind"]
+    if kind not in LAMP_KINDS:
+        near = nearest_name(str(kind), list(LAMP_KINDS))
+        raise InputError(
+            f"must be one of {', '.join(LAMP_KINDS)}, got {str(kind)[:60]!r}",
+            field=f"{field} kind",
+            remedy=f"did you mean {near!r}?" if near else None,
+        )
+    known = list(LAMP_KINDS[kind].model_fields)
+    for key in table:
+        if key not in known:
+            near = nearest_name(key, known)
+            raise InputError(
+                f"unknown key {key[:60]!r} for kind {kind!r}",
+                field=field,
+                remedy=f"did you mean {near!r}?" if near else f"known keys: {', '.join(known)}",
+            )

@@ -1,0 +1,202 @@
+"""[observer], [gaze], [atmosphere], [glare] and [display]: the eye and the screen."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from andon.scene.base import Count, Fraction, NonNegative, Positive, Reference, Table, refusal
+
+__all__ = ["Atmosphere", "Display", "Gaze", "Glare", "Observer"]
+
+
+class Observer(Table):
+    """Whose eyes."""
+
+    age: Annotated[float, Field(ge=0, le=120)] = Field(
+        default=25.0,
+        description="Years, 0…120.",
+    )
+    pigment: Annotated[float, Field(ge=0, le=1.2)] = Field(
+        default=0.5,
+        description="CIE pigmentation: 0 black, 0.5 brown, 1.0 light, 1.2 very light eyes.",
+    )
+    pupil_mm: Annotated[float, Field(ge=1, le=10)] | None = Field(
+        default=None,
+        description="Fixed pupil diameter in mm (2…8 in life).",
+    )
+    pupil_model: Literal["moon-spencer", "watson-yellott"] | None = Field(
+        default=None,
+        description="Pupil from the adaptation luminance; default: watson-yellott.",
+    )
+    glasses: Literal["none", "spectacles", "contact-lenses"] = Field(
+        default="none",
+        description="What is worn; short-sighted lenses add needles to glare.",
+    )
+    glasses_dioptres: Annotated[float, Field(ge=-30, le=30)] = Field(
+        default=0.0,
+        description="Power of what is worn, dioptres; negative for short sight.",
+    )
+    interpupillary_mm: Annotated[float, Field(gt=0, le=100)] = Field(
+        default=63.0,
+        description="Distance of the pupils in mm.",
+    )
+
+    @model_validator(mode="after")
+    def _check_pupil(self) -> Observer:
+        if self.pupil_mm is not None and self.pupil_model is not None:
+            raise refusal("pupil_mm and pupil_model exclude each other", key="pupil_model")
+        return self
+
+
+class Gaze(Table):
+    """Where the observer looks."""
+
+    source: Literal[
+        "capture", "file", "lsl", "mouse", "openxr", "fixed", "surface", "background"
+    ] = Field(
+        default="capture",
+        description="capture: capture.gaze; fixed: distance_m; surface, background: a layer of "
+        "the glass.",
+    )
+    file: Reference | None = Field(
+        default=None,
+        description="Recording (CSV) of source file.",
+    )
+    stream: str | None = Field(
+        default=None,
+        description="Name of the LSL stream; default: the first gaze.",
+    )
+    distance_m: Positive | None = Field(
+        default=None,
+        description="Fixation distance of source fixed, metres.",
+    )
+    filter: Literal["none", "paper", "one-euro"] = Field(
+        default="one-euro",
+        description="Smoothing, in dioptres; paper: mean of `samples` in metres.",
+    )
+    samples: Annotated[int, Field(ge=1, le=1000)] = Field(
+        default=20,
+        description="Of the mean.",
+    )
+    minimum_cutoff_hz: Positive = Field(
+        default=1.0,
+        description="Of one-euro: cutoff at rest, Hz.",
+    )
+    speed_coefficient: NonNegative = Field(
+        default=0.5,
+        description="Of one-euro: Hz per dioptre/s.",
+    )
+    minimum_confidence: Fraction = Field(
+        default=0.6,
+        description="Samples below this are dropped.",
+    )
+
+    @model_validator(mode="after")
+    def _check_source(self) -> Gaze:
+        for key in ("file", "distance_m"):
+            wanted = {"file": "file", "distance_m": "fixed"}[key]
+            if (getattr(self, key) is not None) != (self.source == wanted):
+                raise refusal(f"source {wanted!r} needs {key}, others do not take it", key=key)
+        return self
+
+
+class Atmosphere(Table):
+    """What is in the air."""
+
+    mist: NonNegative = Field(
+        default=0.0,
+        description="Relative mist; 0: clear air.",
+    )
+
+
+class Glare(Table):
+    """Light scattered in the observer's eye; without this table there is none."""
+
+    model: Literal[
+        "cie135",
+        "cie146-general",
+        "cie146-small-angle",
+        "cie146-stiles-holladay",
+        "spencer",
+        "ijspeert",
+        "paper",
+        "glow",
+    ] = Field(
+        default="cie135",
+        description="Point-spread function; paper: the paper's own; glow: a Gaussian around "
+        "luminous bodies, no eye.",
+    )
+    renderer: Literal["auto", "per-source", "whole-picture"] = Field(
+        default="auto",
+        description="Around each source, or a filter over the picture.",
+    )
+    highlights: bool = Field(
+        default=True,
+        description="Highlights on virtual metal and water glare too.",
+    )
+    highlight_contrast: Positive = Field(
+        default=40.0,
+        description="Halo and needles from this luminance ratio to the surround on.",
+    )
+    halo: bool = Field(
+        default=True,
+        description="The coloured ring.",
+    )
+    needles: bool = Field(
+        default=True,
+        description="Flare needles.",
+    )
+    adaptation: Literal["auto", "photopic", "mesopic", "scotopic"] = Field(
+        default="auto",
+        description="Weights of the model spencer.",
+    )
+    minimum_angle_degrees: Positive = Field(
+        default=0.1,
+        description="Light scattered by less than this stays where it is, degrees.",
+    )
+    glow_sigma_degrees: Positive | None = Field(
+        default=None,
+        description="Of the model glow: σ in degrees; default: as much as cie135 within 1°.",
+    )
+    seed: Count | None = Field(
+        default=None,
+        description="Pattern of needles; default: from scene.seed.",
+    )
+
+    @model_validator(mode="after")
+    def _check_glow(self) -> Glare:
+        if self.glow_sigma_degrees is not None and self.model != "glow":
+            raise refusal("belongs to model 'glow'", key="glow_sigma_degrees", remedy="remove it")
+        return self
+
+
+class Display(Table):
+    """From luminance to the screen."""
+
+    mode: Literal["vst", "ost"] = Field(
+        default="vst",
+        description="vst: video see-through; ost: optical, adds light to what is seen.",
+    )
+    exposure: Positive | None = Field(
+        default=None,
+        description="Linear screen value per cd/m². Default: 1/capture.luminance_per_unit, which "
+        "gives light that was not changed its own bytes back.",
+    )
+    tone: Literal["none", "reinhard", "fusion"] = Field(
+        default="none",
+        description="none: clips; reinhard: compresses; fusion: Mertens exposure fusion.",
+    )
+    peak_luminance_cd_m2: Positive | None = Field(
+        default=None,
+        description="cd/m² of screen value 1; needed where mode is ost.",
+    )
+    transmittance: Fraction = Field(
+        default=1.0,
+        description="τ of an optical see-through display: share of real light that passes.",
+    )
+    dither: bool = Field(
+        default=False,
+        description="Noise of half a step against banding.",
+    )

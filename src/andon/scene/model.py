@@ -1,0 +1,228 @@
+"""The whole scene: every table of the file, and the rules between tables."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, cast
+
+from pydantic import Field, PrivateAttr, model_validator
+
+from andon.errors import InputError
+from andon.quantities import Photometry
+from andon.scene.base import Table, refusal
+from andon.scene.eye import Atmosphere, Display, Gaze, Glare, Observer
+from andon.scene.lamp import AnyLamp
+from andon.scene.objects import Glass, SceneObject
+from andon.scene.rig import About, Capture, Rig
+from andon.scene.surface import Ambient, Baked, Probes, Surface
+
+__all__ = ["Scene"]
+
+
+class Scene(Table):
+    """Everything that a frame needs. Attribute paths are those of the file.
+
+    Tables that are ``None`` are absent, and so is their stage. `folder` is what paths in the
+    scene are relative to and confined to; `file` is named in messages.
+    """
+
+    scene: About = Field(
+        default=About(),
+        description="The session as a whole.",
+    )
+    rig: Rig | None = Field(
+        default=None,
+        description="One camera or two eyes.",
+    )
+    capture: Capture | None = Field(
+        default=None,
+        description="The pictures and what their numbers mean.",
+    )
+    surface: Surface | None = Field(
+        default=None,
+        description="The real geometry that receives light.",
+    )
+    ambient: Ambient | None = Field(
+        default=None,
+        description="E0, the light of the photograph.",
+    )
+    lamp: tuple[AnyLamp, ...] = Field(
+        default=(),
+        description="[[lamp]]: what emits.",
+    )
+    baked: Baked | None = Field(
+        default=None,
+        description="Precomputed illuminance maps.",
+    )
+    probes: Probes | None = Field(
+        default=None,
+        description="Light probes.",
+    )
+    object: tuple[SceneObject, ...] = Field(
+        default=(),
+        description="[[object]]: virtual objects.",
+    )
+    glass: tuple[Glass, ...] = Field(
+        default=(),
+        description="[[glass]]: transparent bodies.",
+    )
+    observer: Observer = Field(
+        default=Observer(),
+        description="Whose eyes.",
+    )
+    gaze: Gaze | None = Field(
+        default=None,
+        description="Where the observer looks.",
+    )
+    atmosphere: Atmosphere = Field(
+        default=Atmosphere(),
+        description="What is in the air.",
+    )
+    glare: Glare | None = Field(
+        default=None,
+        description="Light scattered in the observer's eye.",
+    )
+    display: Display = Field(
+        default=Display(),
+        description="From luminance to the screen.",
+    )
+
+    _folder: Path = PrivateAttr(default=Path())
+    _file: str = PrivateAttr(default="scene.toml")
+
+    @property
+    def folder(self) -> Path:
+        """What the scene's paths are relative to, and stay inside."""
+        return self._folder
+
+    @property
+    def file(self) -> str:
+        """The name of the scene file, for messages."""
+        return self._file
+
+    @property
+    def photometry(self) -> Photometry:
+        """``absolute`` or ``relative``: the word that every number carries."""
+        return self.scene.photometry
+
+    def placed_at(self, folder: Path, file: str) -> Scene:
+        """The same scene with its paths relative to `folder` and `file` named in messages."""
+        copy = self.model_copy()
+        copy._folder, copy._file = folder, file
+        return copy
+
+    def path(self, reference: str, field: str) -> Path:
+        """The file that `reference` names, confined to `folder`; `field` is for the message.
+
+        Raises `InputError` if the reference leaves the folder.
+        """
+        from andon.files.paths import confined
+
+        try:
+            return confined(reference, self._folder)
+        except InputError as error:
+            raise InputError(
+                error.rule, file=self._file, field=field, remedy=error.remedy
+            ) from error
+
+    def at(self, time_seconds: float) -> Scene:
+        """The scene at one moment: keyframes of lamps resolved, none left."""
+        from andon.scene.keyframes import lamp_at
+
+        lamps: list[Any] = []
+        for index, lamp in enumerate(self.lamp):
+            if lamp.path is not None:
+                raise InputError(
+                    "motion from a file is in the schema but not built yet",
+                    file=self._file,
+                    field=f"lamp[{index}].path",
+                    remedy="use [[lamp.key]]",
+                )
+            lamps.append(lamp_at(lamp, time_seconds))
+        return self.model_copy(update={"lamp": tuple(lamps)})
+
+    def to_toml(self) -> str:
+        """The scene as TOML; parsing it gives an equal scene."""
+        from andon.scene.dump import dump_scene
+
+        return dump_scene(self)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _name_lamps(cls, value: Any) -> Any:
+        if not isinstance(value, dict):
+            return value
+        tables = cast(dict[str, Any], value)
+        lamps = _named(tables.get("lamp"))
+        ambient = tables.get("ambient")
+        if isinstance(ambient, dict):
+            sources = cast(dict[str, Any], ambient)
+            ambient = sources | (
+                {"source": _named(sources["source"])} if "source" in sources else {}
+            )
+        given = {"lamp": lamps, "ambient": ambient}
+        return tables | {key: given[key] for key in given if key in tables}
+
+    @model_validator(mode="after")
+    def _check_between_tables(self) -> Scene:
+        self._check_names()
+        self._check_baked()
+        if self.ambient is not None and self.ambient.probes and self.probes is None:
+            raise refusal(
+                "needs a [probes] table", key="ambient.probes", remedy="add probes.volume"
+            )
+        return self
+
+    def _check_names(self) -> None:
+        sources = self.ambient.source if self.ambient is not None else ()
+        places = [(f"lamp[{index}]", lamp.name) for index, lamp in enumerate(self.lamp)]
+        places += [(f"ambient.source[{index}]", lamp.name) for index, lamp in enumerate(sources)]
+        first: dict[str, str] = {}
+        for place, name in places:
+            if name in first:
+                raise refusal(
+                    f"the name {name!r} is taken by {first[name]}",
+                    key=f"{place}.name",
+                    remedy="names are unique",
+                )
+            first[name] = place
+
+    def _check_baked(self) -> None:
+        inside = self.baked.lamps if self.baked is not None else ()
+        transports = {lamp.name: lamp.transport for lamp in self.lamp}
+        for index, name in enumerate(inside):
+            key = f"baked.lamps[{index}]"
+            if name not in transports:
+                raise refusal(f"there is no lamp {name!r}", key=key)
+            if transports[name] == "direct":
+                raise refusal(
+                    f"the lamp {name!r} has transport 'direct' and would count twice",
+                    key=key,
+                    remedy="give it transport 'baked' or 'direct+bounce'",
+                )
+        for index, lamp in enumerate(self.lamp):
+            if lamp.transport != "direct" and lamp.name not in inside:
+                raise refusal(
+                    f"{lamp.transport!r} needs {lamp.name!r} in baked.lamps",
+                    key=f"lamp[{index}].transport",
+                )
+
+
+def _named(lamps: Any) -> Any:
+    """Lamps whose missing names are filled in: the kind and the first free number."""
+    if not isinstance(lamps, tuple):
+        return lamps
+    entries = cast(tuple[Any, ...], lamps)
+    taken = {str(cast(dict[str, Any], e).get("name")) for e in entries if isinstance(e, dict)}
+    named: list[Any] = []
+    for entry in entries:
+        if isinstance(entry, dict) and "name" not in entry:
+            table = cast(dict[str, Any], entry)
+            kind = str(table.get("kind", "lamp"))[:40]
+            number = 1
+            while f"{kind}-{number}" in taken:
+                number += 1
+            taken.add(f"{kind}-{number}")
+            entry = table | {"name": f"{kind}-{number}"}
+        named.append(entry)
+    return tuple(named)

@@ -1,0 +1,235 @@
+"""[[object]] and [[glass]]: what is put into the scene."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from andon.scene.base import (
+    Fraction,
+    Name,
+    NonNegative,
+    NonNegativeTriple,
+    Positive,
+    Reference,
+    Size,
+    Table,
+    Vector,
+    refusal,
+)
+from andon.scene.geometry import Direction, Transform, UnitQuaternion
+
+__all__ = ["Background", "Glass", "ObjectKey", "SceneObject"]
+
+
+class Placed(Table):
+    """Where a thing stands: position, rotation and scale, or one matrix."""
+
+    position: Vector = Field(
+        default=(0.0, 0.0, 0.0),
+        description="Position in metres, world.",
+    )
+    rotation_xyzw: UnitQuaternion = Field(
+        default=(0.0, 0.0, 0.0, 1.0),
+        description="Rotation as a unit quaternion (x, y, z, w).",
+    )
+    scale: Positive = Field(
+        default=1.0,
+        description="Uniform scale.",
+    )
+    transform: Transform | None = Field(
+        default=None,
+        description="4×4 affine matrix, row by row, instead of the three above.",
+    )
+
+    @model_validator(mode="after")
+    def _check_placed(self) -> Placed:
+        if self.transform is not None:
+            for key in ("position", "rotation_xyzw", "scale"):
+                if key in self.model_fields_set:
+                    raise refusal("transform excludes it", key=key, remedy="keep one of them")
+        return self
+
+
+class ObjectKey(Table):
+    """One keyframe of an object."""
+
+    time_seconds: float = Field(description="Session time of the key in seconds.")
+    position: Vector | None = Field(
+        default=None,
+        description="Position in metres, world.",
+    )
+    rotation_xyzw: UnitQuaternion | None = Field(
+        default=None,
+        description="Unit quaternion (x, y, z, w).",
+    )
+
+
+class SceneObject(Placed):
+    """A virtual object."""
+
+    name: Name = Field(
+        default="object",
+        description="For messages.",
+    )
+    mesh: Reference = Field(description="glTF file.")
+    animation: Name | None = Field(
+        default=None,
+        description="Animation of the file that plays.",
+    )
+    animation_start_seconds: float = Field(
+        default=0.0,
+        description="Session time of its beginning.",
+    )
+    animation_speed: float = Field(
+        default=1.0,
+        description="1: as in the file; 0: stands still.",
+    )
+    loop: bool = Field(
+        default=True,
+        description="The animation begins again at its end.",
+    )
+    casts_shadow: bool = Field(
+        default=True,
+        description="Darkens the real surface.",
+    )
+    lit_by_probes: bool = Field(
+        default=True,
+        description="Takes indirect light from [probes].",
+    )
+    key: tuple[ObjectKey, ...] = Field(
+        default=(),
+        description="[[object.key]]: keyframes, rising times.",
+    )
+
+    @model_validator(mode="after")
+    def _check_keys(self) -> SceneObject:
+        for index, (before, after) in enumerate(pairwise(self.key), start=1):
+            if not after.time_seconds > before.time_seconds:
+                raise refusal("must be later than the key before", key=f"key[{index}].time_seconds")
+        return self
+
+
+class Background(Table):
+    """What is seen through glass."""
+
+    kind: Literal["frame", "surface", "texture"] = Field(
+        default="surface",
+        description="surface: the scene's geometry with the frame on it; frame: the picture at "
+        "distance_m; texture: a picture on a plane.",
+    )
+    file: Reference | None = Field(
+        default=None,
+        description="Picture of kind texture.",
+    )
+    distance_m: Positive | None = Field(
+        default=None,
+        description="Of kind frame: from the eye, metres.",
+    )
+    position: Vector = Field(
+        default=(0.0, 0.0, 0.0),
+        description="Of kind texture: the plane's centre, metres.",
+    )
+    normal: Direction = Field(
+        default=(0.0, 0.0, 1.0),
+        description="Of kind texture: the plane's normal.",
+    )
+    up: Direction = Field(
+        default=(0.0, 1.0, 0.0),
+        description="Of kind texture: the picture's up.",
+    )
+    width_m: Positive = Field(
+        default=1.0,
+        description="Of kind texture: metres.",
+    )
+    height_m: Positive = Field(
+        default=1.0,
+        description="Of kind texture: metres.",
+    )
+
+    @model_validator(mode="after")
+    def _check_kind(self) -> Background:
+        for key, kind in (("file", "texture"), ("distance_m", "frame")):
+            if (getattr(self, key) is not None) != (self.kind == kind):
+                raise refusal(f"kind {kind!r} needs {key}, other kinds do not take it", key=key)
+        return self
+
+
+class Glass(Placed):
+    """A transparent body."""
+
+    name: Name = Field(
+        default="glass",
+        description="For messages.",
+    )
+    shape: Literal["sphere", "slab", "lens", "mesh"] = Field(
+        default="sphere",
+        description="Its form.",
+    )
+    radius_m: Positive | None = Field(
+        default=None,
+        description="Of a sphere, metres; of a lens: its rim.",
+    )
+    size_m: Size | None = Field(
+        default=None,
+        description="Of a slab: width, height, thickness in metres.",
+    )
+    curvature_m: tuple[float, float] | None = Field(
+        default=None,
+        description="Of a lens: radii of front and back, metres, convex positive.",
+    )
+    thickness_m: Positive | None = Field(
+        default=None,
+        description="Of a lens: at its centre, metres.",
+    )
+    mesh: Reference | None = Field(
+        default=None,
+        description="Of shape mesh: a closed glTF or OBJ mesh.",
+    )
+    index: Annotated[float, Field(ge=1, le=5)] = Field(
+        default=1.51,
+        description="Refractive index, 1…5.",
+    )
+    cauchy_b_um2: NonNegative = Field(
+        default=0.0,
+        description="Dispersion: n(λ) = index + B·(1/λ² − 1/0.5876²), λ and B in µm, µm².",
+    )
+    absorption_per_m: NonNegativeTriple = Field(
+        default=(0.0, 0.0, 0.0),
+        description="Beer–Lambert absorption in 1/m, number or three.",
+    )
+    texture: Reference | None = Field(
+        default=None,
+        description="Picture of what sticks to the surface.",
+    )
+    texture_transmittance: Fraction = Field(
+        default=0.8,
+        description="Share of light that the texture lets through; α = 1 − this.",
+    )
+    interfaces: Annotated[int, Field(ge=1, le=2)] = Field(
+        default=2,
+        description="Refractions: 1 (entry only) or 2 (exact).",
+    )
+    background: Background = Field(
+        default=Background(),
+        description="What is seen through it.",
+    )
+
+    @model_validator(mode="after")
+    def _check_shape(self) -> Glass:
+        needed = {
+            "sphere": ("radius_m",),
+            "slab": ("size_m",),
+            "lens": ("radius_m", "curvature_m", "thickness_m"),
+            "mesh": ("mesh",),
+        }
+        for key in ("radius_m", "size_m", "curvature_m", "thickness_m", "mesh"):
+            given = getattr(self, key) is not None
+            if given != (key in needed[self.shape]):
+                rule = "takes no" if given else "needs"
+                raise refusal(f"shape {self.shape!r} {rule} {key}", key=key)
+        if self.curvature_m is not None and 0 in self.curvature_m:
+            raise refusal("a radius of 0 is no surface", key="curvature_m")
+        return self

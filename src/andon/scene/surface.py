@@ -1,0 +1,344 @@
+"""[surface], [ambient], [baked] and [probes]: what receives light, and the light there is."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+
+from andon.scene.base import (
+    Count,
+    Fraction,
+    FractionTriple,
+    Name,
+    NonNegative,
+    NonNegativeTriple,
+    Positive,
+    PositiveTriple,
+    Reference,
+    Table,
+    Vector,
+    exactly_one,
+    refusal,
+)
+from andon.scene.geometry import Transform
+from andon.scene.lamp import AnyLamp
+
+__all__ = [
+    "Ambient",
+    "Baked",
+    "Depth",
+    "Placement",
+    "ProbePlace",
+    "Probes",
+    "Surface",
+    "SurfaceResponse",
+]
+
+
+def _drop_nan(values: tuple[float, ...]) -> tuple[float, ...]:
+    # NaN is a hole in any case; keeping it would make a scene unequal to itself.
+    return tuple(value for value in values if value == value)
+
+
+class Depth(Table):
+    """A depth image. Holes stay holes: they are counted, never filled."""
+
+    file: Reference = Field(description="The depth image.")
+    kind: Literal["z", "distance", "disparity"] = Field(
+        default="z",
+        description="z: along the optical axis; distance: along the ray; disparity: pixels.",
+    )
+    scale_to_m: Positive = Field(
+        default=1.0,
+        description="Metres (disparity: pixels) per unit of the file; 0.001 for millimetres.",
+    )
+    baseline_m: Positive | None = Field(
+        default=None,
+        description="Of disparity: distance of the cameras.",
+    )
+    focal_px: Positive | None = Field(
+        default=None,
+        description="Of disparity: focal length in pixels; default: the camera's fx.",
+    )
+    doffs_px: float = Field(
+        default=0.0,
+        description="Of disparity: x difference of the principal points.",
+    )
+    invalid: Annotated[
+        tuple[Annotated[float, Field(allow_inf_nan=True)], ...], AfterValidator(_drop_nan)
+    ] = Field(
+        default=(),
+        description="Values of the file that mean a hole; NaN, ±inf and ≤ 0 always do.",
+    )
+    max_jump: Annotated[float, Field(gt=0, le=1)] = Field(
+        default=0.05,
+        description="Relative step between neighbours that cuts the surface, (0, 1].",
+    )
+    thickness_m: Positive | None = Field(
+        default=None,
+        description="Closes objects at their back for shadows, metres; default: open.",
+    )
+
+    @model_validator(mode="after")
+    def _check_disparity(self) -> Depth:
+        if self.kind == "disparity" and self.baseline_m is None:
+            raise refusal(
+                "kind 'disparity' needs it", key="baseline_m", remedy="state it in metres"
+            )
+        if self.kind != "disparity":
+            for key in ("baseline_m", "focal_px", "doffs_px"):
+                if key in self.model_fields_set:
+                    raise refusal("belongs to kind 'disparity'", key=key, remedy="remove it")
+        return self
+
+
+class SurfaceResponse(Table):
+    """Measured relation of illuminance and camera RGB of one material."""
+
+    material: Name = Field(
+        default="*",
+        description="Name of the material in the mesh; * is all others.",
+    )
+    file: Reference | None = Field(
+        default=None,
+        description="Response file, instead of the two lists.",
+    )
+    illuminance_lux: tuple[NonNegative, ...] = Field(
+        default=(),
+        description="Rising illuminances in lx.",
+    )
+    rgb: tuple[tuple[NonNegative, NonNegative, NonNegative], ...] = Field(
+        default=(),
+        description="Linear camera RGB at each of them, rising in every channel.",
+    )
+
+    @model_validator(mode="after")
+    def _check_curve(self) -> SurfaceResponse:
+        lists = bool(self.illuminance_lux or self.rgb)
+        if lists == (self.file is not None):
+            raise refusal("exactly one of file, (illuminance_lux and rgb) is allowed")
+        if lists and not len(self.illuminance_lux) == len(self.rgb) >= 2:
+            raise refusal(
+                f"illuminance_lux and rgb must be equally long, 2 at least, got "
+                f"{len(self.illuminance_lux)} and {len(self.rgb)}"
+            )
+        if any(b <= a for a, b in pairwise(self.illuminance_lux)):
+            raise refusal("must rise", key="illuminance_lux")
+        if any(y <= x for a, b in pairwise(self.rgb) for x, y in zip(a, b, strict=True)):
+            raise refusal("must rise in every channel", key="rgb")
+        return self
+
+
+def _depth_from_text(value: Any) -> Any:
+    return {"file": value} if isinstance(value, str) else value
+
+
+AnyDepth = Annotated[
+    Depth, BeforeValidator(_depth_from_text, json_schema_input_type=Reference | Depth)
+]
+
+
+class Surface(Table):
+    """The real geometry that receives virtual light: a mesh, a depth image, or normals alone."""
+
+    mesh: Reference | None = Field(
+        default=None,
+        description="Mesh file (OBJ, glTF) in world space.",
+    )
+    depth: AnyDepth | None = Field(
+        default=None,
+        description="Depth image: a path or [surface.depth].",
+    )
+    normals: Reference | None = Field(
+        default=None,
+        description="Picture of normals. Alone: a surface without positions, for distant lamps "
+        "only; with depth: instead of the depth's own normals.",
+    )
+    normals_axes: Literal["opencv", "opengl", "world"] = Field(
+        default="opencv",
+        description="Axes of `normals`: camera with y down, z forward (opencv); y up, z backward "
+        "(opengl); world.",
+    )
+    world_from_mesh: Transform | None = Field(
+        default=None,
+        description="4×4 affine placement of the mesh, row by row.",
+    )
+    reflectance: FractionTriple | None = Field(
+        default=None,
+        description="Diffuse reflectance ρ in [0, 1], number or three; default: the mesh's.",
+    )
+    reflectance_map: Reference | None = Field(
+        default=None,
+        description="Picture of ρ in the view, linear, instead of `reflectance`.",
+    )
+    occluder_triangles: Count = Field(
+        default=30000,
+        description="Depth meshes are thinned to this many triangles for shadows; 0: all.",
+    )
+    response: tuple[SurfaceResponse, ...] = Field(
+        default=(),
+        description="[[surface.response]] per material.",
+    )
+
+    @model_validator(mode="after")
+    def _check_geometry(self) -> Surface:
+        if self.normals is None or self.mesh is not None:  # normals may go with depth, or alone
+            exactly_one(self, "mesh", "depth", "normals")
+        if self.reflectance is not None and self.reflectance_map is not None:
+            raise refusal(
+                "reflectance and reflectance_map exclude each other", key="reflectance_map"
+            )
+        materials = [entry.material for entry in self.response]
+        for index, material in enumerate(materials):
+            if material in materials[:index]:
+                raise refusal(
+                    f"{material!r} has a response already", key=f"response[{index}].material"
+                )
+        return self
+
+
+class Ambient(Table):
+    """E0, the light in which the pictures were taken."""
+
+    illuminance_lux: PositiveTriple | None = Field(
+        default=None,
+        description="E0 in lx, the same everywhere: a number or three channels, > 0.",
+    )
+    map: Reference | None = Field(
+        default=None,
+        description="EXR of E0 in lx for each pixel of the view.",
+    )
+    probes: bool = Field(
+        default=False,
+        description="E0 from the light probes of [probes].",
+    )
+    dimming: NonNegativeTriple = Field(
+        default=(1.0, 1.0, 1.0),
+        description="Factor on E0 in the result, number or three; 1: unchanged.",
+    )
+    dimming_mode: Literal["linear", "paper"] = Field(
+        default="linear",
+        description="linear: dimming scales light; paper: it scales encoded RGB (not physical).",
+    )
+    source: tuple[AnyLamp, ...] = Field(
+        default=(),
+        description="[[ambient.source]]: real lamps and windows that are part of E0, as [[lamp]].",
+    )
+    removed: tuple[Name, ...] = Field(
+        default=(),
+        description="Names of sources that are switched off in the result.",
+    )
+
+    @model_validator(mode="after")
+    def _check_ambient(self) -> Ambient:
+        exactly_one(self, "illuminance_lux", "map", "probes")
+        names = [source.name for source in self.source]
+        for index, name in enumerate(self.removed):
+            if name not in names:
+                raise refusal(f"there is no source {name!r}", key=f"removed[{index}]")
+        return self
+
+
+class Baked(Table):
+    """Precomputed illuminance maps."""
+
+    folder: Reference = Field(description="Folder of the maps.")
+    lamps: tuple[Name, ...] = Field(
+        default=(),
+        description="Names of the lamps that are in the maps.",
+    )
+    depth_tolerance_m: Positive = Field(
+        default=0.02,
+        description="A map is valid where its depth differs by less than this, metres.",
+    )
+
+
+class ProbePlace(Table):
+    """A probe placed by hand."""
+
+    name: Name = Field(
+        default="probe",
+        description="For messages.",
+    )
+    position: Vector = Field(description="Where it counts, metres, world.")
+    capture_position: Vector | None = Field(
+        default=None,
+        description="Where it is captured, metres; default: its position.",
+    )
+    role: Literal["general", "sky", "bounce", "bleeding"] = Field(
+        default="general",
+        description="What it is there for.",
+    )
+    range_m: Positive | None = Field(
+        default=None,
+        description="Farthest surface captured, metres.",
+    )
+
+
+class Placement(Table):
+    """How probes are placed before a bake."""
+
+    kind: Literal["hand", "nodes", "vertices", "lattice", "panoramas", "automatic"] = Field(
+        default="hand",
+        description="hand: [[probes.place]]; nodes: of a glTF file; automatic: pruned lattice.",
+    )
+    file: Reference | None = Field(
+        default=None,
+        description="glTF of the nodes, or list of panoramas.",
+    )
+    spacing_m: Positive | None = Field(
+        default=None,
+        description="Of a lattice, metres.",
+    )
+    error: Positive | None = Field(
+        default=None,
+        description="Of automatic placement: largest relative irradiance error.",
+    )
+
+
+class Probes(Table):
+    """Light probes."""
+
+    volume: Reference = Field(description="The probe volume: a bake writes it, a frame reads it.")
+    zones: tuple[Name, ...] = Field(
+        default=(),
+        description="Zones that are used; default: all.",
+    )
+    state: Name | None = Field(
+        default=None,
+        description="State of the volume (day, night); default: its first.",
+    )
+    blend_state: Name | None = Field(
+        default=None,
+        description="A second state that is mixed in.",
+    )
+    blend: Fraction = Field(
+        default=0.0,
+        description="0: state … 1: blend_state.",
+    )
+    placement: Placement = Field(
+        default=Placement(),
+        description="Where probes go.",
+    )
+    place: tuple[ProbePlace, ...] = Field(
+        default=(),
+        description="[[probes.place]]: placed by hand.",
+    )
+    cube_size_px: Annotated[int, Field(ge=8, le=256)] = Field(
+        default=128,
+        description="Side of the captured cube maps, 8…256 pixels.",
+    )
+    order: Annotated[int, Field(ge=0, le=4)] = Field(
+        default=2,
+        description="Highest band of the spherical harmonics, 0…4.",
+    )
+    bounces: Annotated[int, Field(ge=0, le=16)] = Field(
+        default=1,
+        description="Times that light is reflected.",
+    )
+    visibility: bool = Field(
+        default=True,
+        description="Walls hide probes behind them.",
+    )

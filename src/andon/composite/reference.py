@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite.model import Ambient
-from andon.lamps import Lamp, PointLamp, SpotLamp, spot_falloff
+from andon.lamps import Lamp, PointLamp, SpotLamp
+from andon.lamps.distributions import spot_attenuation
 from andon.quantities import CameraFrame, Surface
 from andon.spaces import View
 
@@ -46,13 +47,15 @@ def compose(
     return draw_lamps(luminance, surface, lamps)
 
 
-def lamp_luminance(lamp: PointLamp | SpotLamp, eye: Float, /) -> Float:
+def lamp_luminance(lamp: PointLamp, eye: Float, /) -> Float:
     """(3,) cd/m² of the lamp's visible disc as seen from `eye` (3,): I towards the eye / (π r²)."""
     reach = eye - lamp.position_m
     intensity = lamp.intensity_cd
     if isinstance(lamp, SpotLamp):
         along = reach @ lamp.direction / np.linalg.norm(reach)
-        intensity = intensity * spot_falloff(along, lamp.inner_radians, lamp.outer_radians)
+        intensity = intensity * spot_attenuation(
+            along, inner_radians=lamp.inner_radians, outer_radians=lamp.outer_radians
+        )
     return intensity / (np.pi * lamp.visible_radius_m**2)
 
 
@@ -61,7 +64,7 @@ def draw_lamps(luminance: Float, surface: Surface, lamps: Sequence[Lamp], /) -> 
 
     A hole hides nothing. The rim is blended over one pixel's angle.
     """
-    drawn = [x for x in lamps if isinstance(x, PointLamp | SpotLamp) and x.visible_radius_m > 0]
+    drawn = [x for x in lamps if isinstance(x, PointLamp) and x.visible_radius_m > 0]
     if not drawn:
         return luminance
     view = surface.view

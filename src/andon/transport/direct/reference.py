@@ -7,15 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.lamps import (
-    DirectionalLamp,
-    HemisphereLamp,
-    Lamp,
-    PointLamp,
-    SkyLamp,
-    SpotLamp,
-    spot_falloff,
-)
+from andon.lamps import DirectionalLamp, HemisphereLamp, Lamp, PointLamp, SkyLamp, SpotLamp
+from andon.lamps.distributions import spot_attenuation
 from andon.quantities import Surface
 from andon.rays import RayScene
 
@@ -30,7 +23,7 @@ def illuminance(lamp: Lamp, position: Float, normal: Float, /) -> Float:
     Source: the relighting paper, equation (1), with I(ω) for spots.
     """
     match lamp:
-        case PointLamp() | SpotLamp():
+        case PointLamp():  # and SpotLamp, which is one with a cone
             return _from_a_place(lamp, position, normal)
         case DirectionalLamp():
             cosine = -normal @ lamp.direction
@@ -43,14 +36,16 @@ def illuminance(lamp: Lamp, position: Float, normal: Float, /) -> Float:
             return sky * lamp.sky_illuminance_lux + (1 - sky) * lamp.ground_illuminance_lux
 
 
-def _from_a_place(lamp: PointLamp | SpotLamp, position: Float, normal: Float) -> Float:
+def _from_a_place(lamp: PointLamp, position: Float, normal: Float) -> Float:
     reach = lamp.position_m - position
     square = np.einsum("...i,...i->...", reach, reach)
     cosine_over_square = np.einsum("...i,...i->...", reach, normal) / square**1.5
     factor = np.maximum(cosine_over_square, 0)
     if isinstance(lamp, SpotLamp):
         along = -(reach @ lamp.direction) / np.sqrt(square)
-        factor = factor * spot_falloff(along, lamp.inner_radians, lamp.outer_radians)
+        factor = factor * spot_attenuation(
+            along, inner_radians=lamp.inner_radians, outer_radians=lamp.outer_radians
+        )
     return factor[..., None] * lamp.intensity_cd
 
 
@@ -59,7 +54,7 @@ def visibility(lamp: Lamp, points: Float, casters: RayScene, /) -> NDArray[np.bo
 
     Sky and hemisphere lamps are ambient: they cast no shadow.
     """
-    if isinstance(lamp, SkyLamp | HemisphereLamp) or not lamp.shadow:
+    if isinstance(lamp, SkyLamp | HemisphereLamp) or lamp.shadow is None:
         return np.ones(len(points), bool)
     if isinstance(lamp, DirectionalLamp):
         return casters.sees_infinity(points, -lamp.direction)

@@ -1,0 +1,21 @@
+// The photograph under its new light: the same functions as reference.py, in units of the picture
+// (cd/m² divided by luminance_per_unit), which half floats hold well.
+
+//!struct AmbientRecord
+
+const INVERSE_PI: f32 = 0.318309886183791;
+
+fn relit_linear(captured: vec3f, added_lux: vec3f, ambient: AmbientRecord) -> vec3f {
+  return captured * (ambient.dimming + added_lux * ambient.inverse_lux);
+}
+
+// Where E0 is a picture, or dimming is the paper's: both are folded into two pictures,
+// what is left of the captured light and what one lux adds to it.
+fn relit_by_maps(dimmed: vec3f, per_lux: vec3f, added_lux: vec3f) -> vec3f {
+  return dimmed + per_lux * added_lux;
+}
+
+fn object_linear(reflectance: vec3f, emitted: vec3f, added_lux: vec3f, ambient: AmbientRecord) -> vec3f {
+  let received = ambient.object_lux + added_lux;
+  return (reflectance * received * INVERSE_PI + emitted) * ambient.units_per_cd_m2;
+}

@@ -1,0 +1,64 @@
+// The order of light on the GPU, in one pass: surface → direct illuminance → composite.
+//
+// One pass instead of three, because on a software rasteriser writing a picture and reading it
+// back costs as much as two lamps. `illuminance_map` is the same without the composite, for when
+// the illuminance itself is wanted.
+
+//!import andon/surface/gbuffer.wgsl
+//!import andon/transport/direct/direct.wgsl
+//!import andon/composite/composite.wgsl
+
+@group(0) @binding(0) var gbuffer: texture_2d<u32>;
+@group(0) @binding(1) var<uniform> view: ViewRecord;
+@group(0) @binding(2) var<uniform> ambient: AmbientRecord;
+// The captured picture, linear; where E0 is a picture: what is left of it after dimming.
+@group(0) @binding(3) var captured: texture_2d<f32>;
+// Where E0 is a picture: what one lux adds.
+@group(0) @binding(4) var per_lux: texture_2d<f32>;
+// cd/m² that the materials of virtual objects emit.
+@group(0) @binding(5) var<uniform> emitted: array<vec4f, 256>;
+
+// Half floats end at 65504; a candle at a centimetre and the sun do not. Lux are stored in units
+// of 64.
+const LUX_UNIT: f32 = 64.0;
+
+fn added_lux(point: SurfacePoint) -> vec3f {
+  let bias = select(direct.bias_real_m, direct.bias_object_m, (point.flags & OBJECT) != 0u);
+  let lux = illuminance(point.position, point.normal, bias);
+  return select(vec3f(0.0), lux, (point.flags & VALID) != 0u);
+}
+
+fn objects(point: SurfacePoint, lux: vec3f, real: vec3f) -> vec3f {
+  let material = min(point.flags >> MATERIAL_SHIFT, 255u);
+  let virtual_linear = object_linear(point.reflectance, emitted[material].xyz, lux, ambient);
+  return select(real, virtual_linear, (point.flags & OBJECT) != 0u);
+}
+
+fn point_at(pixel: vec2f) -> SurfacePoint {
+  return surface_point(textureLoad(gbuffer, vec2i(pixel), 0), view, pixel);
+}
+
+@fragment fn relit(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+  let lux = added_lux(point_at(pixel.xy));
+  let light = textureLoad(captured, vec2i(pixel.xy), 0).xyz;
+  return vec4f(relit_linear(light, lux, ambient), 1.0);
+}
+
+@fragment fn relit_with_objects(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+  let point = point_at(pixel.xy);
+  let lux = added_lux(point);
+  let light = textureLoad(captured, vec2i(pixel.xy), 0).xyz;
+  return vec4f(objects(point, lux, relit_linear(light, lux, ambient)), 1.0);
+}
+
+@fragment fn relit_with_maps(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+  let point = point_at(pixel.xy);
+  let lux = added_lux(point);
+  let at = vec2i(pixel.xy);
+  let real = relit_by_maps(textureLoad(captured, at, 0).xyz, textureLoad(per_lux, at, 0).xyz, lux);
+  return vec4f(objects(point, lux, real), 1.0);
+}
+
+@fragment fn illuminance_map(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+  return vec4f(added_lux(point_at(pixel.xy)) / LUX_UNIT, 1.0);
+}

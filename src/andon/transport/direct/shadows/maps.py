@@ -1,0 +1,293 @@
+"""Shadow maps of all lamps of a frame; a lamp that has not moved keeps its map."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.gpu.device import Gpu
+from andon.gpu.passes import FullscreenPass, bind, color_attachment, shader_module
+from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
+from andon.lamps import DirectionalLamp, Lamp, PointLamp, SpotLamp
+from andon.quantities import Geometry
+from andon.transport.direct.records import (
+    FACE_RECORD,
+    STRUCTS,
+    WIDE_SPOT_RADIANS,
+    PlanarFrame,
+)
+from andon.transport.direct.shadows.culling import face_triangles
+
+__all__ = ["NEAR_M", "ShadowMaps"]
+
+FOLDER = "andon/transport/direct/shadows"
+# Nothing nearer than this to a lamp casts a shadow (the bulb itself, its socket): metres.
+NEAR_M = 0.01
+# A depth map without casters would have an empty bounding sphere.
+EMPTY_RADIUS_M = 1.0
+
+
+def is_paraboloid(lamp: Lamp, /) -> bool:
+    """The lamp looks into all directions (or nearly)."""
+    if isinstance(lamp, SpotLamp):
+        return lamp.outer_radians > WIDE_SPOT_RADIANS
+    return isinstance(lamp, PointLamp)
+
+
+class ShadowMaps:
+    """Depth maps around lamps: paraboloid pairs and planes, in two texture arrays.
+
+    All maps of a frame have one size: the largest that a lamp asks for.
+
+    Attributes
+    ----------
+    paraboloids : r32float array, two layers a lamp, radial distance in metres.
+    planes : depth32float array, one layer a lamp: near/depth for spots, linear for directional.
+    layers : lamp name → first layer.
+    frames : lamp name → `PlanarFrame`, for lamps with a plane.
+    """
+
+    def __init__(self, gpu: Gpu, casters: Geometry, lamps: Sequence[Lamp]) -> None:
+        self.gpu = gpu
+        shadowed = [lamp for lamp in lamps if getattr(lamp, "shadow", None) is not None]
+        self.size: int = max((lamp.shadow.map_size for lamp in shadowed), default=2)  # type: ignore[union-attr]
+        self.size += self.size % 2
+        round_lamps = [lamp.name for lamp in shadowed if is_paraboloid(lamp)]
+        flat_lamps = [lamp.name for lamp in shadowed if not is_paraboloid(lamp)]
+        self.layers = {name: 2 * i for i, name in enumerate(round_lamps)}
+        self.layers |= {name: i for i, name in enumerate(flat_lamps)}
+        self.frames: dict[str, PlanarFrame] = {}
+        self._drawn: dict[str, bytes] = {}
+        side = self.size if round_lamps else 2
+        self.paraboloids = make_texture(
+            gpu, "r32float", side, side, layers=max(2, 2 * len(round_lamps)), label="paraboloids"
+        )
+        side = self.size if flat_lamps else 2
+        self.planes = make_texture(
+            gpu, "depth32float", side, side, layers=max(1, len(flat_lamps)), label="planes"
+        )
+        self._load(casters)
+        self._faces = _Faces(self) if round_lamps else None
+        self._planar = _Planar(self, len(flat_lamps)) if flat_lamps else None
+
+    def _load(self, casters: Geometry) -> None:
+        import wgpu
+
+        self.positions = np.ascontiguousarray(casters.positions, np.float32)
+        self.triangles = np.ascontiguousarray(casters.triangles, np.int32)
+        centre = np.zeros(3)
+        self.radius_m = EMPTY_RADIUS_M
+        if len(self.positions):
+            centre = 0.5 * (casters.positions.min(axis=0) + casters.positions.max(axis=0))
+            self.radius_m = float(np.linalg.norm(casters.positions - centre, axis=1).max()) + 1e-3
+        self.centre = centre
+        device, usage = self.gpu.device, wgpu.BufferUsage
+        vertices = self.positions if len(self.positions) else np.zeros((1, 3), np.float32)
+        indices = self.triangles if len(self.triangles) else np.zeros((1, 3), np.int32)
+        self.vertices = device.create_buffer_with_data(data=vertices, usage=usage.VERTEX)
+        self.indices = device.create_buffer_with_data(data=indices, usage=usage.INDEX)
+
+    def update(self, encoder: Any, lamps: Sequence[Lamp]) -> int:
+        """Records the maps of lamps that moved since they were drawn; returns how many."""
+        moved = 0
+        for lamp in lamps:
+            if lamp.name not in self.layers:
+                continue
+            if not is_paraboloid(lamp):
+                self.frames[lamp.name] = self._frame(lamp)
+            pose = _pose(lamp)
+            if self._drawn.get(lamp.name) == pose:
+                continue
+            self._draw(encoder, lamp)
+            self._drawn[lamp.name] = pose
+            moved += 1
+        return moved
+
+    def _draw(self, encoder: Any, lamp: Lamp) -> None:
+        layer = self.layers[lamp.name]
+        if is_paraboloid(lamp):
+            assert self._faces is not None
+            assert isinstance(lamp, PointLamp)
+            self._faces.encode(encoder, lamp.position_m, layer)
+        else:
+            assert self._planar is not None
+            self._planar.encode(encoder, self.frames[lamp.name], layer)
+
+    def _frame(self, lamp: Lamp) -> PlanarFrame:
+        if isinstance(lamp, SpotLamp):
+            right, down = perpendicular(lamp.direction)
+            # One texel wider, so that the cone's rim has its neighbours in the map.
+            tangent = float(np.tan(lamp.outer_radians)) * (1 + 2 / self.size)
+            return PlanarFrame(lamp.position_m, right, down, lamp.direction, tangent)
+        assert isinstance(lamp, DirectionalLamp)
+        right, down = perpendicular(lamp.direction)
+        margin = 1.05
+        return PlanarFrame(
+            self.centre, right, down, lamp.direction, self.radius_m, 2 * margin * self.radius_m
+        )
+
+
+def _pose(lamp: Lamp) -> bytes:
+    parts = [getattr(lamp, key, None) for key in ("position_m", "direction", "outer_radians")]
+    return b"".join(np.asarray(part, np.float64).tobytes() for part in parts if part is not None)
+
+
+def perpendicular(axis: NDArray[np.float64], /) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Two unit vectors that form a right-handed frame (right, down, axis) with `axis` (3,)."""
+    helper = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    right = np.cross(helper, axis)
+    right /= np.linalg.norm(right)
+    return right, np.cross(axis, right)
+
+
+def _vertex_state(module: Any, entry: str) -> dict[str, Any]:
+    attributes = [{"format": "float32x3", "offset": 0, "shader_location": 0}]
+    return {
+        "module": module,
+        "entry_point": entry,
+        "buffers": [{"array_stride": 12, "step_mode": "vertex", "attributes": attributes}],
+    }
+
+
+def _depth_state() -> dict[str, Any]:
+    return {"format": "depth32float", "depth_write_enabled": True, "depth_compare": "greater"}
+
+
+def _depth_attachment(view: Any) -> dict[str, Any]:
+    return {
+        "view": view,
+        "depth_load_op": "clear",
+        "depth_store_op": "store",
+        "depth_clear_value": 0.0,
+    }
+
+
+class _Faces:
+    """Six plane faces, resampled into two paraboloids."""
+
+    def __init__(self, maps: ShadowMaps) -> None:
+        import wgpu
+
+        gpu = maps.gpu
+        self.maps, self.face = maps, maps.size // 2
+        size = (3 * self.face, 2 * self.face)
+        self.depth = make_texture(gpu, "depth32float", *size, label="faces")
+        self.slope = make_texture(gpu, "rg16float", *size, label="face slopes")
+        module = shader_module(gpu, f"{FOLDER}/faces.wgsl", STRUCTS)
+        self.pipeline = gpu.device.create_render_pipeline(
+            label="shadow faces",
+            layout="auto",
+            vertex=_vertex_state(module, "face_corner"),
+            primitive={"topology": "triangle-list", "cull_mode": "none"},
+            depth_stencil=_depth_state(),
+            fragment={
+                "module": module,
+                "entry_point": "face_slope",
+                "targets": [{"format": "rg16float"}],
+            },
+        )
+        self.resample = FullscreenPass(
+            gpu,
+            f"{FOLDER}/resample.wgsl",
+            "both_discs",
+            ["r32float", "r32float"],
+            structs=STRUCTS,
+        )
+        layers = maps.paraboloids.layers or 0
+        self.views = [maps.paraboloids.layer_view(layer) for layer in range(layers)]
+        usage = wgpu.BufferUsage
+        self.lamps, self.indices = [], []
+        for _ in range(layers // 2):
+            self.lamps.append(uniform_buffer(gpu, FACE_RECORD.dtype.itemsize, "shadow lamp"))
+            # Worst case: every face sees every triangle.
+            size_bytes = max(12, 6 * maps.triangles.nbytes)
+            self.indices.append(
+                gpu.device.create_buffer(size=size_bytes, usage=usage.INDEX | usage.COPY_DST)
+            )
+        self.groups = [bind(gpu, self.pipeline, 0, {0: lamp}) for lamp in self.lamps]
+        self.resample_groups = [
+            self.resample.bind(0, {0: lamp, 1: self.depth.view, 2: self.slope.view})
+            for lamp in self.lamps
+        ]
+
+    def encode(self, encoder: Any, position: NDArray[np.float64], layer: int) -> None:
+        maps, slot = self.maps, layer // 2
+        record = FACE_RECORD.pack(position=position, near_m=NEAR_M)
+        write_buffer(maps.gpu, self.lamps[slot], record)
+        faces = face_triangles(maps.positions, maps.triangles, position.astype(np.float32))
+        joined = np.concatenate(faces)
+        if len(joined):
+            write_buffer(maps.gpu, self.indices[slot], joined)
+        render = encoder.begin_render_pass(
+            label="shadow faces",
+            color_attachments=[color_attachment(self.slope.view)],
+            depth_stencil_attachment=_depth_attachment(self.depth.view),
+        )
+        render.set_pipeline(self.pipeline)
+        render.set_bind_group(0, self.groups[slot])
+        render.set_vertex_buffer(0, maps.vertices)
+        render.set_index_buffer(self.indices[slot], "uint32")
+        start = 0
+        for face, triangles in enumerate(faces):
+            corner = (face % 3 * self.face, face // 3 * self.face, self.face, self.face)
+            render.set_viewport(*corner, 0, 1)
+            render.set_scissor_rect(*corner)
+            if triangles.size:
+                render.draw_indexed(triangles.size, 1, start, 0, face)
+            start += triangles.size
+        render.end()
+        targets = self.views[layer : layer + 2]
+        self.resample.encode(encoder, targets, [self.resample_groups[slot]])
+
+
+class _Planar:
+    """One plane map a lamp."""
+
+    def __init__(self, maps: ShadowMaps, count: int) -> None:
+        gpu = maps.gpu
+        self.maps = maps
+        module = shader_module(gpu, f"{FOLDER}/planar.wgsl", STRUCTS)
+        self.pipeline = gpu.device.create_render_pipeline(
+            label="shadow plane",
+            layout="auto",
+            vertex=_vertex_state(module, "planar_corner"),
+            primitive={"topology": "triangle-list", "cull_mode": "none"},
+            depth_stencil=_depth_state(),
+        )
+        self.buffers = [uniform_buffer(gpu, 64, "clip_from_world") for _ in range(count)]
+        self.groups = [bind(gpu, self.pipeline, 0, {0: buffer}) for buffer in self.buffers]
+        self.views = [maps.planes.layer_view(layer) for layer in range(count)]
+
+    def encode(self, encoder: Any, frame: PlanarFrame, layer: int) -> None:
+        matrix = clip_from_world(frame).T.astype(np.float32)
+        write_buffer(self.maps.gpu, self.buffers[layer], matrix)
+        render = encoder.begin_render_pass(
+            label="shadow plane",
+            color_attachments=[],
+            depth_stencil_attachment=_depth_attachment(self.views[layer]),
+        )
+        render.set_pipeline(self.pipeline)
+        render.set_bind_group(0, self.groups[layer])
+        render.set_vertex_buffer(0, self.maps.vertices)
+        render.set_index_buffer(self.maps.indices, "uint32")
+        if self.maps.triangles.size:
+            render.draw_indexed(self.maps.triangles.size)
+        render.end()
+
+
+def clip_from_world(frame: PlanarFrame, /) -> NDArray[np.float64]:
+    """(4, 4) projection of a planar map; depth near/z for cones, ½ − z/range for parallel light."""
+    rows = np.zeros((4, 4))
+    rows[0, :3] = frame.right / frame.half_width
+    rows[1, :3] = -frame.down / frame.half_width
+    if frame.depth_range_m:
+        rows[2, :3] = -frame.axis / frame.depth_range_m
+        rows[3, 3] = 1
+    else:
+        rows[3, :3] = frame.axis
+    rows[:, 3] -= rows[:, :3] @ frame.centre
+    rows[2, 3] += 0.5 if frame.depth_range_m else NEAR_M
+    return rows

@@ -1,0 +1,7 @@
+// Triangles into one plane map: a cone's perspective or the sun's parallel projection.
+
+@group(0) @binding(0) var<uniform> clip_from_world: mat4x4f;
+
+@vertex fn planar_corner(@location(0) position: vec3f) -> @builtin(position) vec4f {
+  return clip_from_world * vec4f(position, 1.0);
+}

@@ -25,7 +25,7 @@ def check_complexity(value: Any, file: str, limits: Limits) -> None:
         item, depth = stack.pop()
         if not isinstance(item, dict | list):
             continue
-        inner = cast("dict[str, Any]", item).values() if isinstance(item, dict) else item
+        inner: Any = cast("dict[str, Any]", item).values() if isinstance(item, dict) else item
         count += 1
         if count > limits.max_nodes or depth > limits.max_depth:
             raise InputError(
@@ -33,11 +33,12 @@ def check_complexity(value: Any, file: str, limits: Limits) -> None:
                 f"{limits.max_depth} deep",
                 file=file,
             )
-        stack.extend((child, depth + 1) for child in cast("Iterable[Any]", inner))
+        stack.extend((child, depth + 1) for child in inner)
 
 
 def _short(value: Any) -> str:
-    shown = repr(value) if not isinstance(value, dict | list) else type(value).__name__
+    kind = type(value).__name__
+    shown = kind if kind in ("dict", "list") else repr(value)
     return shown if len(shown) <= 60 else shown[:57] + "..."
 
 

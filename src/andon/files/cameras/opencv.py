@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,8 +77,8 @@ def _parse_yaml(text: str, path: str | Path, limits: Limits) -> Any:
     # libyaml is twenty times faster; PyYAML can be built without it.
     fast: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
-        events: Any = yaml.parse(text, Loader=fast)  # pyright: ignore[reportUnknownMemberType]
-        _check_events(events, path, limits)
+        events = yaml.parse(text, Loader=fast)  # pyright: ignore
+        _check_events(cast("Iterable[Any]", events), path, limits)
 
         class Loader(fast):
             """The safe loader, to which OpenCV's matrix tag is a plain table."""

@@ -13,7 +13,7 @@ from __future__ import annotations
 import io
 import struct
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +62,7 @@ def convert_8bit(image: Image.Image, profile: Any, file: str) -> Image.Image:
 
     if image.mode == "L" and profile.profile.xcolor_space.strip() == "RGB":
         image = image.convert("RGB")  # against the standards, but common
-    target: Any = ImageCms.createProfile("sRGB")  # pyright: ignore[reportUnknownMemberType]
+    target = cast("Any", ImageCms.createProfile("sRGB"))  # pyright: ignore[reportUnknownMemberType]
     try:
         # Relative colorimetric: what matters is the light, so white maps to white and nothing
         # inside the gamut is moved.

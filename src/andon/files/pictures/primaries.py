@@ -27,8 +27,9 @@ SAME_XY = 1e-3
 
 def _xyz_of_xy(xy: tuple[float, ...] | Float) -> Float:
     """XYZ (..., 3) with Y = 1 of chromaticities (..., 2)."""
-    x, y = np.moveaxis(np.asarray(xy, np.float64), -1, 0)
-    return np.stack([x / y, np.ones_like(y), (1 - x - y) / y], axis=-1).astype(np.float64)
+    pairs: Float = np.asarray(xy, np.float64)
+    x, y = pairs[..., 0], pairs[..., 1]
+    return np.stack([x / y, np.ones_like(y), (1 - x - y) / y], axis=-1)
 
 
 def _xyz_from_rgb(chromaticities: tuple[float, ...]) -> Float:

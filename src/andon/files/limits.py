@@ -56,7 +56,9 @@ DEFAULT_LIMITS = Limits()
 def check_size(width: int, height: int, file: str | Path, limits: Limits = DEFAULT_LIMITS) -> None:
     """Refuse a picture whose header claims an empty or too large size in pixels."""
     if width < 1 or height < 1:
-        raise InputError(f"must have at least 1×1 pixels, the header says {width}×{height}", file=file)
+        raise InputError(
+            f"must have at least 1×1 pixels, the header says {width}×{height}", file=file
+        )
     if width > limits.max_side or height > limits.max_side or width * height > limits.max_pixels:
         raise InputError(
             f"must have sides of at most {limits.max_side} and at most {limits.max_pixels} pixels, "

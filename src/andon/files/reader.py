@@ -16,7 +16,9 @@ __all__ = ["ReadFunction", "Reader", "choose_reader"]
 class ReadFunction(Protocol):
     """``read(path, *, limits=DEFAULT_LIMITS)``; raises `InputError` and nothing else."""
 
-    def __call__(self, path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> Any: ...
+    def __call__(self, path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> Any:
+        """What the file holds."""
+        ...
 
 
 @dataclass(frozen=True)

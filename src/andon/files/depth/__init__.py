@@ -60,9 +60,7 @@ DEPTH_READERS = (
 )
 
 
-def read_depth_array(
-    path: str | Path, *, limits: Limits = DEFAULT_LIMITS
-) -> NDArray[np.float64]:
+def read_depth_array(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> NDArray[np.float64]:
     """The raw numbers of a depth or disparity file, (H, W) float64, row 0 on top.
 
     Raises

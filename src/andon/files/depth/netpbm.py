@@ -60,9 +60,7 @@ def read_pgm(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> NDArray[np
     return _pixels(data, start, rows, columns, kind, path)
 
 
-def _header(
-    data: bytes, count: int, path: str | Path, limits: Limits
-) -> tuple[list[bytes], int]:
+def _header(data: bytes, count: int, path: str | Path, limits: Limits) -> tuple[list[bytes], int]:
     """`count` tokens and the position after the single white space that ends the last one."""
     tokens: list[bytes] = []
     at = 0

@@ -42,9 +42,7 @@ def read_npz(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> NDArray[np
     except InputError:
         raise
     except Exception as error:  # BadZipFile, zlib.error, NotImplementedError, RuntimeError …
-        raise InputError(
-            f"must be a sound NPZ archive: {str(error)[:120]}", file=path
-        ) from error
+        raise InputError(f"must be a sound NPZ archive: {str(error)[:120]}", file=path) from error
     return _parse_npy(content, path, limits)
 
 
@@ -74,7 +72,9 @@ def _parse_header(data: bytes, path: str | Path, limits: Limits) -> tuple[Any, A
             raise ValueError(f"version {version}")
     except Exception as error:  # ValueError, SyntaxError, TypeError, tokenize errors …
         raise InputError(
-            f"must be a sound NPY array: {str(error)[:120]}", file=path, remedy="write it by np.save"
+            f"must be a sound NPY array: {str(error)[:120]}",
+            file=path,
+            remedy="write it by np.save",
         ) from error
     shape, _, dtype = parsed
     if dtype.hasobject or dtype.kind not in "fiu":

@@ -19,7 +19,7 @@ from andon.files.paths import check_file
 from andon.files.pictures.model import Picture
 from andon.files.pictures.primaries import rec709_from_chromaticities
 
-__all__ = ["ExrPart", "read_exr", "read_exr_part"]
+__all__ = ["ExrPart", "openexr", "read_exr", "read_exr_part"]
 
 MAGIC = b"\x76\x2f\x31\x01"
 MAX_CHANNELS = 256  # multi-layer renders have up to about 100
@@ -105,12 +105,17 @@ def read_exr_part(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> ExrPa
     return ExrPart(channels, origin, shape, attributes, chromaticities)
 
 
+def openexr() -> Any:
+    """The OpenEXR wheel, which has no type annotations."""
+    import OpenEXR  # pyright: ignore[reportMissingTypeStubs, reportUnusedImport]
+
+    return OpenEXR
+
+
 def _open(path: str | Path, *, header_only: bool) -> Any:
     """The first part as the wheel gives it; every complaint of the wheel is an `InputError`."""
-    import OpenEXR
-
     try:
-        opened = OpenEXR.File(str(path), separate_channels=True, header_only=header_only)
+        opened = openexr().File(str(path), separate_channels=True, header_only=header_only)
         parts: list[Any] = opened.parts
     except Exception as error:  # the wheel raises RuntimeError, ValueError, UnicodeDecodeError …
         line = str(error).splitlines()[0] if str(error) else type(error).__name__
@@ -126,9 +131,8 @@ def _check_header(
     header: dict[str, Any], path: str | Path, limits: Limits
 ) -> tuple[tuple[int, int], tuple[int, int], tuple[int, int]]:
     """Origin of the data window, shape of the display window, shape of the data window."""
-    import OpenEXR
-
-    if header.get("type") not in (OpenEXR.scanlineimage, OpenEXR.tiledimage):
+    wheel = openexr()
+    if header.get("type") not in (wheel.scanlineimage, wheel.tiledimage):
         raise InputError("must be a flat picture, not a deep one", file=path)
     corners: list[list[int]] = []
     for key in ("dataWindow", "displayWindow"):

@@ -12,7 +12,8 @@ from __future__ import annotations
 
 import io
 import struct
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["convert_8bit", "convert_16bit", "is_srgb", "open_profile"]
 
 Float = NDArray[np.float64]
+Curve = Callable[[Float], Float]
 
 # The profile connection space's white, D50 (ICC.1:2022, 7.2.16), as chromaticities.
 D50_XY = (0.34570, 0.35854)
@@ -60,13 +62,14 @@ def convert_8bit(image: Image.Image, profile: Any, file: str) -> Image.Image:
 
     if image.mode == "L" and profile.profile.xcolor_space.strip() == "RGB":
         image = image.convert("RGB")  # against the standards, but common
+    target = cast("Any", ImageCms.createProfile("sRGB"))  # pyright: ignore[reportUnknownMemberType]
     try:
         # Relative colorimetric: what matters is the light, so white maps to white and nothing
         # inside the gamut is moved.
         converted = ImageCms.profileToProfile(
             image,
             profile,
-            ImageCms.createProfile("sRGB"),
+            target,
             renderingIntent=ImageCms.Intent.RELATIVE_COLORIMETRIC,
             outputMode="RGB",
         )
@@ -137,7 +140,7 @@ def _xyz(tag: bytes, file: str) -> Float:
     return np.array(struct.unpack_from(">3i", tag, 8)) / 65536
 
 
-def _curve(tag: bytes, file: str) -> Any:
+def _curve(tag: bytes, file: str) -> Curve:
     """A function [0, 1] → [0, 1] from a curveType or parametricCurveType tag."""
     try:
         if tag[:4] == b"curv":
@@ -149,18 +152,29 @@ def _curve(tag: bytes, file: str) -> Any:
     raise _broken("a tone curve is of an unknown kind", file)
 
 
-def _sampled_curve(tag: bytes) -> Any:
+def _sampled_curve(tag: bytes) -> Curve:
     (count,) = struct.unpack_from(">I", tag, 8)
     if count == 0:
-        return lambda x: x
+        return _power(1.0)
     if count == 1:
-        gamma = struct.unpack_from(">H", tag, 12)[0] / 256
-        return lambda x: x**gamma
+        return _power(struct.unpack_from(">H", tag, 12)[0] / 256)
     table = np.frombuffer(tag, ">u2", count=count, offset=12) / 65535
-    return lambda x: np.interp(x, np.linspace(0, 1, count), table)
+    knots = np.linspace(0, 1, count)
+
+    def curve(x: Float) -> Float:
+        return np.interp(x, knots, table)
+
+    return curve
 
 
-def _parametric_curve(tag: bytes) -> Any:
+def _power(gamma: float) -> Curve:
+    def curve(x: Float) -> Float:
+        return x**gamma
+
+    return curve
+
+
+def _parametric_curve(tag: bytes) -> Curve:
     """Y = (aX + b)^g + above from the knee on, slope·X + below under it (10.18, table 68)."""
     (kind,) = struct.unpack_from(">H", tag, 8)
     if kind not in PARAMETERS:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import warnings
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ __all__ = ["guarded", "open_image"]
 
 
 def open_image(data: bytes, kind: str, file: str) -> Image.Image:
-    """The picture with its header read and nothing decoded; only Pillow's plugin `kind` is asked."""
+    """The picture with its header read and nothing decoded; no plugin but `kind` is asked."""
     from PIL import Image
 
     with guarded(kind, file):
@@ -25,7 +25,7 @@ def open_image(data: bytes, kind: str, file: str) -> Image.Image:
 
 
 @contextmanager
-def guarded(kind: str, file: str) -> Iterator[None]:
+def guarded(kind: str, file: str) -> Generator[None, None, None]:
     """Turn whatever Pillow raises on damaged data into an `InputError`.
 
     Pillow's own limit (about 179 Mpixel, process-wide) stays as it is; its earlier warning is

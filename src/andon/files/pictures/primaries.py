@@ -27,7 +27,8 @@ SAME_XY = 1e-3
 
 def _xyz_of_xy(xy: tuple[float, ...] | Float) -> Float:
     """XYZ (..., 3) with Y = 1 of chromaticities (..., 2)."""
-    x, y = np.moveaxis(np.asarray(xy, np.float64), -1, 0)
+    pairs: Float = np.asarray(xy, np.float64)
+    x, y = pairs[..., 0], pairs[..., 1]
     return np.stack([x / y, np.ones_like(y), (1 - x - y) / y], axis=-1)
 
 

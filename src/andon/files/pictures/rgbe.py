@@ -152,9 +152,7 @@ def _matrix(header: _Header, file: str) -> NDArray[np.float64] | None:
     return rec709_from_chromaticities(primaries, file)
 
 
-def _decode_rgbe(
-    rgbe: NDArray[np.uint8], exposure: NDArray[np.float64]
-) -> NDArray[np.float32]:
+def _decode_rgbe(rgbe: NDArray[np.uint8], exposure: NDArray[np.float64]) -> NDArray[np.float32]:
     """(n, m, 3) float32 = (mantissa + ½)·2^(exponent − 136) / exposure; exponent 0 is black.
 
     The half is Radiance's: its writer truncates mantissas, so the middle of the step is unbiased.

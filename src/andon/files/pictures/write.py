@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError, MachineError
 from andon.files.atomic import write_atomically, write_bytes
+from andon.files.pictures.exr import openexr
 from andon.files.pictures.primaries import REC709_XY
 from andon.quantities import Photometry
 
@@ -74,23 +75,24 @@ def write_exr(
     if values.ndim == 3 and values.shape[2] == 1:
         values = values[..., 0]
     _check_array(values, path, (np.float16, np.float32, np.float64))
-    import OpenEXR
-
+    wheel = openexr()
     names = "Y" if values.ndim == 2 else "RGB"
     planes = np.moveaxis(np.atleast_3d(values.astype(np.float32)), -1, 0)
     header: dict[str, Any] = {
-        "compression": OpenEXR.ZIP_COMPRESSION,
-        "type": OpenEXR.scanlineimage,
+        "compression": wheel.ZIP_COMPRESSION,
+        "type": wheel.scanlineimage,
         "chromaticities": REC709_XY,
         "andon:unit": unit,
         "andon:photometry": photometry,
         **(attributes or {}),
     }
-    channels = {name: np.ascontiguousarray(plane) for name, plane in zip(names, planes, strict=True)}
+    channels = {
+        name: np.ascontiguousarray(plane) for name, plane in zip(names, planes, strict=True)
+    }
 
     def fill(temporary: Path) -> None:
         try:
-            OpenEXR.File(header, channels).write(str(temporary))
+            wheel.File(header, channels).write(str(temporary))
         except RuntimeError as error:  # the library's words for a file system that refuses
             raise OSError(str(error)) from error
 

@@ -4,7 +4,7 @@
 // back costs as much as two lamps. `illuminance_map` is the same without the composite, for when
 // the illuminance itself is wanted.
 
-//!import andon/surface/gbuffer.wgsl
+//!import andon/gbuffer/gbuffer.wgsl
 //!import andon/transport/direct/direct.wgsl
 //!import andon/composite/composite.wgsl
 

@@ -1,7 +1,7 @@
 // Visible lamps: discs of their own luminance, hidden by whatever is nearer (draw_lamps in
 // reference.py). Drawn far to near over the picture, premultiplied.
 
-//!import andon/surface/gbuffer.wgsl
+//!import andon/gbuffer/gbuffer.wgsl
 //!struct DiscRecord
 
 @group(0) @binding(0) var gbuffer: texture_2d<u32>;

@@ -5,6 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Annotated, Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from andon.scene.base import (
@@ -51,6 +53,23 @@ class Placed(Table):
                 if key in self.model_fields_set:
                     raise refusal("transform excludes it", key=key, remedy="keep one of them")
         return self
+
+
+    def world_from_object(self) -> NDArray[np.float64]:
+        """(4, 4) affine placement in metres."""
+        if self.transform is not None:
+            return np.array(self.transform, dtype=np.float64)
+        x, y, z, w = np.array(self.rotation_xyzw) / np.linalg.norm(self.rotation_xyzw)
+        matrix = np.eye(4)
+        matrix[:3, :3] = self.scale * np.array(
+            [
+                [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+            ]
+        )
+        matrix[:3, 3] = self.position
+        return matrix
 
 
 class ObjectKey(Table):

@@ -1,6 +1,6 @@
 // Triangles into the G-buffer of a pinhole view.
 
-//!import andon/surface/gbuffer.wgsl
+//!import andon/gbuffer/gbuffer.wgsl
 
 @group(0) @binding(0) var<uniform> view: ViewRecord;
 // Flags of the draw (valid, and object or not) in x.

@@ -15,8 +15,7 @@ from andon.rays import face_normals
 from andon.spaces import View
 from andon.surface import reference
 from andon.surface.model import SurfaceModel
-from andon.surface.records import (
-    NEAR_M,
+from andon.gbuffer import (
     OBJECT,
     STRUCTS,
     VALID,
@@ -27,7 +26,7 @@ from andon.surface.records import (
 )
 from andon.surface.textures import TEXTURE_SIDE_PX
 
-__all__ = ["NEAR_M", "GpuSurface", "SurfaceStage"]
+__all__ = ["GpuSurface", "SurfaceStage"]
 
 SHADER = "andon/surface/raster.wgsl"
 VERTEX = np.dtype(

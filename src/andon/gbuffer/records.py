@@ -1,4 +1,4 @@
-"""Host structs of the surface: what the shaders know of a view, and how a G-buffer is packed."""
+"""Host structs: what the shaders know of a view, and how a G-buffer is packed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,16 @@ from andon.gpu.layout import HostStruct
 from andon.quantities import Surface
 from andon.spaces import View
 
-__all__ = ["NEAR_M", "STRUCTS", "VIEW_RECORD", "pack_surface", "pack_view", "unpack_surface"]
+__all__ = [
+    "NEAR_M",
+    "OBJECT",
+    "STRUCTS",
+    "VALID",
+    "VIEW_RECORD",
+    "pack_surface",
+    "pack_view",
+    "unpack_surface",
+]
 
 # Nothing nearer than this to an eye is drawn: the near plane, in metres. The depth buffer is
 # reversed and infinite (near/z in float32), so a small value costs no precision.

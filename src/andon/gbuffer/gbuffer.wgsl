@@ -4,7 +4,7 @@
 //   y  normal, octahedral 2 × snorm16   w  bit 0 valid, bit 1 virtual object, 8… material
 
 //!import andon/gpu/octahedral.wgsl
-//!import andon/surface/view.wgsl
+//!import andon/gbuffer/view.wgsl
 
 const VALID: u32 = 1u;
 const OBJECT: u32 = 2u;

@@ -1,0 +1,148 @@
+"""The fast engine: WGSL, software Vulkan included."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from andon import gbuffer
+from andon.composite import stage as composite
+from andon.display.stage import DisplayStage
+from andon.engines.prepared import Prepared
+from andon.gpu.device import open_gpu
+from andon.gpu.passes import FullscreenPass
+from andon.gpu.textures import Texture, make_texture
+from andon.lamps import Lamp
+from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
+from andon.surface.stage import GpuSurface, SurfaceStage
+from andon.transport.direct import stage as direct
+
+__all__ = ["GpuEngine"]
+
+FRAME = "andon/frame.wgsl"
+STRUCTS = gbuffer.STRUCTS | direct.STRUCTS | composite.STRUCTS
+# frame.wgsl stores illuminance in this many lux, so that half floats reach past sunlight.
+LUX_UNIT = 64.0
+
+
+class _View:
+    """Everything of one view that lives on the GPU; made once."""
+
+    def __init__(self, engine: GpuEngine, frame: CameraFrame) -> None:
+        gpu, prepared = engine.gpu, engine.prepared
+        self.frame = frame
+        view = frame.view
+        self.surface = SurfaceStage(gpu, prepared.surface, view)
+        seen = self.surface.surface
+        self.composite = composite.CompositeStage(
+            gpu,
+            view,
+            prepared.ambient,
+            seen.texture.view,
+            seen.view_buffer,
+            seen.emitted_cd_m2,
+        )
+        self.composite.load(frame)
+        self.luminance = make_texture(gpu, "rgba16float", view.width, view.height, label="light")
+        self.display = DisplayStage(
+            gpu, self.luminance, frame.response, prepared.exposure, frame.luminance_per_unit
+        )
+        self.relit = FullscreenPass(
+            gpu, FRAME, self._entry_point(prepared), ["rgba16float"], structs=STRUCTS
+        )
+        self.lux = FullscreenPass(gpu, FRAME, "illuminance_map", ["rgba16float"], structs=STRUCTS)
+        self.lux_map = make_texture(gpu, "rgba16float", view.width, view.height, label="lux")
+        own = {0: seen.texture.view, 1: seen.view_buffer}
+        everything = own | self.composite.resources
+        used = {"relit": (2, 3), "relit_with_objects": (2, 3, 5)}
+        keys = (0, 1, *used.get(self._entry_point(prepared), (2, 3, 4, 5)))
+        light = engine.direct.resources
+        self.relit_groups = [
+            self.relit.bind(0, {key: everything[key] for key in keys}),
+            self.relit.bind(1, light),
+        ]
+        self.lux_groups = [self.lux.bind(0, own), self.lux.bind(1, light)]
+
+    def _entry_point(self, prepared: Prepared) -> str:
+        if self.composite.has_maps:
+            return "relit_with_maps"
+        has_objects = len(prepared.surface.objects.triangles) > 0
+        return "relit_with_objects" if has_objects else "relit"
+
+
+class GpuEngine:
+    """Draws frames on the device; nothing is read back until it is asked for.
+
+    Raises `MachineError` where there is no adapter.
+    """
+
+    name = "gpu"
+
+    def __init__(self, prepared: Prepared) -> None:
+        self.gpu = open_gpu()
+        self.adapter = self.gpu.adapter_name
+        self.prepared = prepared
+        bias = prepared.surface.bias
+        self.direct = direct.DirectStage(
+            self.gpu,
+            prepared.surface.shadow_casters,
+            prepared.lamps(0.0),
+            bias_real_m=bias.real_m,
+            bias_object_m=bias.object_m,
+        )
+        self._views = {name: _View(self, frame) for name, frame in prepared.frames.items()}
+        self._encoder: Any = None
+        self.maps_redrawn = 0
+
+    @property
+    def encoder(self) -> Any:
+        """The commands recorded since the last `finish`."""
+        if self._encoder is None:
+            self._encoder = self.gpu.device.create_command_encoder(label="frame")
+        return self._encoder
+
+    def see(self, view_name: str) -> GpuSurface:
+        """Records the drawing of the G-buffer."""
+        return self._views[view_name].surface.encode(self.encoder)
+
+    def illuminate(self, seen: GpuSurface, lamps: Sequence[Lamp]) -> _View:
+        """Brings shadow maps and lamps up to date; shared by both eyes."""
+        self.maps_redrawn = self.direct.encode(self.encoder, lamps)
+        return self._views[seen.view.name]
+
+    def compose(
+        self, frame: CameraFrame, seen: GpuSurface, light: _View, lamps: Sequence[Lamp]
+    ) -> Texture:
+        """Records direct light and composite in one pass, then the visible lamps."""
+        light.relit.encode(self.encoder, [light.luminance.view], light.relit_groups)
+        light.composite.encode_lamps(
+            self.encoder, light.luminance.view, lamps, frame.luminance_per_unit
+        )
+        return light.luminance
+
+    def encode(self, frame: CameraFrame, luminance: Texture) -> DisplayStage:
+        """Records the display."""
+        display = self._views[frame.view.name].display
+        display.encode(self.encoder)
+        return display
+
+    def finish(self) -> None:
+        """Submits what was recorded and waits for it."""
+        if self._encoder is not None:
+            self.gpu.device.queue.submit([self._encoder.finish()])
+            self._encoder = None
+        self.gpu.wait()
+
+    def read(
+        self, seen: GpuSurface, light: _View, luminance: Texture, image: DisplayStage
+    ) -> tuple[Surface, Illuminance, Luminance, DisplayImage]:
+        """The quantities as arrays; draws the illuminance map, which no frame needs."""
+        light.lux.encode(self.encoder, [light.lux_map.view], light.lux_groups)
+        self.finish()
+        lux = light.lux_map.read()[..., :3].astype(np.float32) * np.float32(LUX_UNIT)
+        linear = luminance.read()[..., :3].astype(np.float32)
+        cd_m2 = linear * np.float32(light.frame.luminance_per_unit)
+        word = self.prepared.photometry
+        return seen.read(), Illuminance(lux, word), Luminance(cd_m2, word), image.read()

@@ -1,0 +1,276 @@
+"""What both engines work on: a scene with its files read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from andon.capture.still import frame_from_picture
+from andon.composite.model import Ambient
+from andon.display.model import Exposure
+from andon.errors import InputError
+from andon.files.cameras import read_camera
+from andon.files.pictures import Picture, read_picture
+from andon.lamps import DirectionalLamp, HemisphereLamp, Lamp, PointLamp, SkyLamp, resolve_lamps
+from andon.quantities import CameraFrame, Photometry, photometric
+from andon.responses import LINEAR, SRGB, Response
+from andon.scene import Scene
+from andon.spaces import View
+from andon.surface.inside import is_buried
+from andon.surface.load import load_surface
+from andon.surface.model import SurfaceModel
+
+__all__ = ["Prepared", "prepare"]
+
+# Tables that the schema has and this version does not draw; a frame says so.
+LATER_TABLES = ("baked", "probes", "glass", "gaze", "glare")
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A scene, ready to be drawn.
+
+    Attributes
+    ----------
+    scene : as loaded.
+    frames : view name → captured light; one or two views.
+    surface : geometry of the scene.
+    ambient : the light of the photograph.
+    exposure : settings of the display.
+    ignored : tables of the scene that this version does not draw.
+    """
+
+    scene: Scene
+    frames: Mapping[str, CameraFrame]
+    surface: SurfaceModel
+    ambient: Ambient
+    exposure: Exposure
+    ignored: tuple[str, ...]
+
+    @property
+    def photometry(self) -> Photometry:
+        """The word that every number carries."""
+        return self.scene.photometry
+
+    def lamps(self, time_seconds: float) -> tuple[Lamp, ...]:
+        """The lamps at one moment, checked against the geometry."""
+        lamps = resolve_lamps(self.scene, time_seconds)
+        if self.surface.is_distant_only:
+            _refuse_near_lamps(self.scene, lamps)
+        return lamps
+
+
+def prepare(scene: Scene, /) -> Prepared:
+    """Reads all that `scene` names. Raises `InputError` for whatever does not fit."""
+    pictures = _pictures(scene)
+    views = {name: _view(scene, name, picture) for name, picture in pictures.items()}
+    ambient = _ambient(scene, views)
+    surface = load_surface(scene, views)
+    per_unit = _luminance_per_unit(scene, ambient)
+    frames = {
+        name: frame_from_picture(
+            picture,
+            views[name],
+            _response(scene, picture),
+            luminance_per_unit=per_unit,
+            file=_source(scene, name)[0],
+        )
+        for name, picture in pictures.items()
+    }
+    ignored = tuple(name for name in LATER_TABLES if getattr(scene, name))
+    prepared = Prepared(scene, frames, surface, ambient, _exposure(scene), ignored)
+    eye = next(iter(frames.values())).view.position
+    _refuse_buried_lamps(scene, prepared.lamps(0.0), surface, eye)
+    return prepared
+
+
+def _source(scene: Scene, name: str) -> tuple[str, str]:
+    """The path of a view's picture, and the field that names it."""
+    source = scene.capture.source if scene.capture else None
+    if source is None:
+        raise InputError(
+            "is missing: there is no picture to relight",
+            file=scene.file,
+            field="capture.source",
+            remedy='add [capture] with source = "photo.png"',
+        )
+    if isinstance(source, str):
+        return str(scene.path(source, "capture.source")), "capture.source"
+    field = f"capture.source.{name}"
+    return str(scene.path(getattr(source, name), field)), field
+
+
+def _pictures(scene: Scene) -> dict[str, Picture]:
+    if scene.rig is None or not scene.rig.cameras:
+        raise InputError(
+            "is missing: nothing says where the pixels look",
+            file=scene.file,
+            field="rig.camera",
+            remedy="add [rig.camera] with file, fx or hfov_degrees",
+        )
+    if scene.rig.trajectory is not None:
+        raise InputError(
+            "is in the schema but not rendered yet",
+            file=scene.file,
+            field="rig.trajectory",
+            remedy="state rig.camera.world_from_camera",
+        )
+    names = [name for name, _ in scene.rig.cameras]
+    shared = scene.capture is not None and isinstance(scene.capture.source, str)
+    if len(names) > 1 and shared:
+        raise InputError(
+            "is one picture for two eyes",
+            file=scene.file,
+            field="capture.source",
+            remedy="give { left = …, right = … }",
+        )
+    return {name: read_picture(_source(scene, name)[0]) for name in names}
+
+
+def _view(scene: Scene, name: str, picture: Picture) -> View:
+    assert scene.rig is not None
+    camera = dict(scene.rig.cameras)[name]
+    height, width = picture.shape
+    if camera.file is None:
+        try:
+            view = camera.view(name, width=width, height=height)
+        except InputError as error:
+            raise InputError(
+                error.rule, file=scene.file, field=error.field, remedy=error.remedy
+            ) from error
+    else:
+        field = f"rig.{'camera' if name == 'mono' else name}.file"
+        view = read_camera(scene.path(camera.file, field), size=(width, height))
+        view = replace(view, name=name)
+        if camera.has_pose:
+            view = replace(view, world_from_camera=camera.pose())
+    undistort = scene.capture is None or scene.capture.undistort
+    if view.distortion and not undistort:
+        raise InputError(
+            "false is in the schema but not rendered yet",
+            file=scene.file,
+            field="capture.undistort",
+            remedy="leave it out: pictures are undistorted",
+        )
+    return view
+
+
+def _response(scene: Scene, picture: Picture) -> Response:
+    table = scene.capture.response if scene.capture else None
+    if picture.encoding == "linear":
+        if table is not None and table.kind != "linear":
+            raise InputError(
+                f"must be linear for an HDR picture, got {table.kind!r}",
+                file=scene.file,
+                field="capture.response",
+                remedy="leave it out",
+            )
+        # HDR light is shown as sRGB: g is what a display needs, g⁻¹ was never applied.
+        return SRGB
+    if table is None:
+        return SRGB
+    if table.kind == "gamma":
+        return Response("gamma", gamma=table.gamma or 2.2)
+    if table.kind == "curve":
+        from andon.files.responses import read_response
+
+        return read_response(scene.path(table.file or "", "capture.response.file"))
+    return LINEAR if table.kind == "linear" else SRGB
+
+
+def _ambient(scene: Scene, views: Mapping[str, View]) -> Ambient:
+    table = scene.ambient
+    if table is None:
+        raise InputError(
+            "is missing: without E0, the light of the photograph, added light has no scale",
+            file=scene.file,
+            field="ambient",
+            remedy="add [ambient] with illuminance_lux",
+        )
+    if table.probes or table.removed:
+        raise InputError(
+            "is in the schema but not rendered yet",
+            file=scene.file,
+            field="ambient.probes" if table.probes else "ambient.removed",
+            remedy="state ambient.illuminance_lux",
+        )
+    if table.map is not None:
+        lux = _ambient_map(scene, table.map, views)
+    else:
+        lux = np.broadcast_to(np.asarray(table.illuminance_lux, float), 3).copy()
+    dimming = np.broadcast_to(np.asarray(table.dimming, float), 3)
+    return Ambient(lux, (dimming[0], dimming[1], dimming[2]), table.dimming_mode)
+
+
+def _ambient_map(scene: Scene, reference: str, views: Mapping[str, View]) -> np.ndarray:
+    path = scene.path(reference, "ambient.map")
+    if len(views) > 1:
+        raise InputError("one map for two eyes", file=scene.file, field="ambient.map")
+    picture = read_picture(path)
+    view = next(iter(views.values()))
+    if picture.shape != view.shape or picture.encoding != "linear":
+        height, width = picture.shape
+        raise InputError(
+            f"must be a linear {view.width}×{view.height} picture, got {width}×{height} "
+            f"{picture.encoding}",
+            file=str(path),
+            field="ambient.map",
+        )
+    bad = int(np.count_nonzero(~(picture.values > 0) | ~np.isfinite(picture.values)))
+    if bad:
+        raise InputError(
+            f"E0 must be finite and > 0 everywhere, {bad} values are not",
+            file=str(path),
+            field="ambient.map",
+        )
+    from andon.lenses import undistort
+
+    return np.asarray(undistort(np.asarray(picture.values, np.float64), view), np.float64)
+
+
+def _luminance_per_unit(scene: Scene, ambient: Ambient) -> float:
+    if scene.capture and scene.capture.luminance_per_unit:
+        return scene.capture.luminance_per_unit
+    # A white diffuser (ρ = 1) in the light of the photograph is the picture's white.
+    return float(photometric(ambient.mean_lux)) / np.pi
+
+
+def _exposure(scene: Scene) -> Exposure:
+    display = scene.display
+    for key, bad in (("mode", "ost"), ("tone", "fusion"), ("dither", True)):
+        if getattr(display, key) == bad:
+            raise InputError(
+                f"{bad!r} is in the schema but not rendered yet",
+                file=scene.file,
+                field=f"display.{key}",
+            )
+    return Exposure(display.exposure, display.tone)  # type: ignore[arg-type]
+
+
+def _refuse_near_lamps(scene: Scene, lamps: tuple[Lamp, ...]) -> None:
+    for index, lamp in enumerate(lamps):
+        if not isinstance(lamp, DirectionalLamp | SkyLamp | HemisphereLamp):
+            raise InputError(
+                f"the lamp {lamp.name!r} has a place, but a normals-only surface has none",
+                file=scene.file,
+                field=f"lamp[{index}].kind",
+                remedy="use directional, sky or hemisphere, or give a depth or a mesh",
+            )
+
+
+def _refuse_buried_lamps(
+    scene: Scene, lamps: tuple[Lamp, ...], surface: SurfaceModel, eye: np.ndarray
+) -> None:
+    if scene.surface is None or scene.surface.mesh is None:
+        return
+    for index, lamp in enumerate(lamps):
+        if isinstance(lamp, PointLamp) and is_buried(lamp.position_m, eye, surface.real):
+            x, y, z = lamp.position_m
+            raise InputError(
+                f"the lamp {lamp.name!r} at ({x:g}, {y:g}, {z:g}) is inside a wall",
+                file=scene.file,
+                field=f"lamp[{index}].position",
+                remedy="move it into the space that the camera sees",
+            )

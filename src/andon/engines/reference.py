@@ -1,0 +1,71 @@
+"""The slow, clear engine: NumPy in float64, rays by Embree."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.composite import reference as composite
+from andon.display import reference as display
+from andon.engines.prepared import Prepared
+from andon.lamps import Lamp
+from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
+from andon.rays import RayScene
+from andon.surface import reference as surface
+from andon.transport.direct import reference as direct
+
+__all__ = ["ReferenceEngine"]
+
+
+class ReferenceEngine:
+    """The oracle of the tests, and what runs where there is no adapter."""
+
+    name = "reference"
+    adapter = "CPU (NumPy, Embree)"
+
+    def __init__(self, prepared: Prepared) -> None:
+        self.prepared = prepared
+        self._casters = RayScene(prepared.surface.shadow_casters)
+        self._surfaces: dict[str, Surface] = {}
+        self.maps_redrawn = 0
+
+    def see(self, view_name: str) -> Surface:
+        """The surface of a view; made once, since geometry and cameras stand still."""
+        if view_name not in self._surfaces:
+            view = self.prepared.frames[view_name].view
+            self._surfaces[view_name] = surface.see(self.prepared.surface, view)
+        return self._surfaces[view_name]
+
+    def illuminate(self, seen: Surface, lamps: Sequence[Lamp]) -> Illuminance:
+        """Direct light of all lamps on the surface."""
+        bias = self.prepared.surface.bias
+        bias_m: NDArray[np.float64] = np.where(seen.is_object, bias.object_m, bias.real_m)
+        lux = direct.illuminate(seen, lamps, self._casters, bias_m=bias_m)
+        return Illuminance(lux, self.prepared.photometry)
+
+    def compose(
+        self, frame: CameraFrame, seen: Surface, light: Illuminance, lamps: Sequence[Lamp]
+    ) -> Luminance:
+        """The photograph under its new light, with objects and lamps in it."""
+        luminance = composite.compose(
+            frame, seen, self.prepared.ambient, np.asarray(light.lux, np.float64), lamps
+        )
+        return Luminance(luminance, self.prepared.photometry)
+
+    def encode(self, frame: CameraFrame, luminance: Luminance) -> DisplayImage:
+        """8-bit codes for the screen."""
+        codes = display.encode(
+            luminance.cd_m2, self.prepared.exposure, frame.response, frame.luminance_per_unit
+        )
+        return DisplayImage(codes)
+
+    def finish(self) -> None:
+        """Nothing is pending."""
+
+    def read(
+        self, seen: Surface, light: Illuminance, luminance: Luminance, image: DisplayImage
+    ) -> tuple[Surface, Illuminance, Luminance, DisplayImage]:
+        """The quantities as arrays: they are already."""
+        return seen, light, luminance, image

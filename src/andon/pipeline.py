@@ -1,0 +1,216 @@
+"""The order of light, on one screen.
+
+::
+
+    capture ─CameraFrame▶ see ─Surface▶ illuminate ─Illuminance▶ compose ─Luminance▶ encode ─▶ DisplayImage
+
+One frame, one or two views: what does not depend on the eye (geometry, lamps, shadow maps) is
+shared, the rest is done per view.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Any, Literal
+
+from andon.errors import InputError, MachineError, nearest_name
+from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
+from andon.scene import Scene
+
+__all__ = ["ENGINES", "Frame", "Renderer", "Report", "render"]
+
+EngineName = Literal["auto", "gpu", "reference"]
+ENGINES = ("auto", "gpu", "reference")
+
+
+@dataclass(frozen=True)
+class Report:
+    """What is worth knowing about a frame besides its pictures.
+
+    Attributes
+    ----------
+    engine, adapter : what drew it.
+    photometry : ``absolute`` or ``relative``, of every number in the frame.
+    hole_pixels, clipped_pixels : without geometry (unchanged), and at the sensor's end.
+    occluder_triangles, occluder_triangles_before, occluder_error_m : of the shadow geometry;
+        the error is the 95th percentile of what decimation moved, in metres.
+    shadow_bias_m : shadows thinner than this are lost on the real surface.
+    maps_redrawn : shadow maps of lamps that had moved.
+    stage_seconds : wall time of each stage.
+    ignored_tables : tables of the scene that this version does not draw.
+    """
+
+    engine: str
+    adapter: str
+    photometry: str
+    hole_pixels: int
+    clipped_pixels: int
+    occluder_triangles: int
+    occluder_triangles_before: int
+    occluder_error_m: float
+    shadow_bias_m: float
+    maps_redrawn: int
+    stage_seconds: Mapping[str, float] = field(default_factory=dict)
+    ignored_tables: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One view of one moment: every quantity that flowed, as arrays (H, W, …)."""
+
+    captured: CameraFrame
+    surface: Surface
+    illuminance: Illuminance
+    luminance: Luminance
+    image: DisplayImage
+    report: Report
+
+
+class Renderer:
+    """Draws a scene as often as wanted; everything costly is made once.
+
+    Parameters
+    ----------
+    scene : from `andon.load_scene` or `andon.scene_from_dict`.
+    engine : ``auto`` takes the GPU where an adapter is found, else the reference.
+
+    Raises
+    ------
+    InputError
+        for files and numbers that do not fit.
+    MachineError
+        for ``engine="gpu"`` without an adapter.
+    """
+
+    def __init__(self, scene: Scene, engine: EngineName = "auto") -> None:
+        from andon.engines.prepared import prepare
+
+        start = perf_counter()
+        self.prepared = prepare(scene)
+        prepared = perf_counter()
+        self._engine = _make_engine(engine, self.prepared)
+        self.setup_seconds = {"read": prepared - start, "set up": perf_counter() - prepared}
+
+    @property
+    def engine_name(self) -> str:
+        """``gpu`` or ``reference``."""
+        return self._engine.name
+
+    @property
+    def view_names(self) -> tuple[str, ...]:
+        """``("mono",)`` or ``("left", "right")``."""
+        return tuple(self.prepared.frames)
+
+    def draw(
+        self, time_seconds: float = 0.0, view: str | None = None, *, timed: bool = False
+    ) -> tuple[Any, ...]:
+        """Draws one view and waits; returns the engine's handles, for `Frame` or a screen.
+
+        With `timed`, each stage is waited for and its seconds are put into `stage_seconds`.
+        """
+        engine, prepared = self._engine, self.prepared
+        frame = prepared.frames[self._view_name(view)]
+        clock = _Clock(engine.finish if timed else None)
+        lamps = prepared.lamps(time_seconds)
+        seen = clock.time("surface", lambda: engine.see(frame.view.name))
+        light = clock.time("direct", lambda: engine.illuminate(seen, lamps))
+        luminance = clock.time("composite", lambda: engine.compose(frame, seen, light, lamps))
+        image = clock.time("display", lambda: engine.encode(frame, luminance))
+        engine.finish()
+        self.stage_seconds = clock.seconds
+        return seen, light, luminance, image
+
+    def render(self, time_seconds: float = 0.0, view: str | None = None) -> Frame:
+        """Draws one view and returns every quantity as arrays.
+
+        Parameters
+        ----------
+        time_seconds : moment of the session; lamps move by it.
+        view : ``mono``, ``left`` or ``right``; None is the rig's first.
+        """
+        handles = self.draw(time_seconds, view, timed=True)
+        surface, illuminance, luminance, image = self._engine.read(*handles)
+        captured = self.prepared.frames[self._view_name(view)]
+        report = self._report(captured, surface)
+        return Frame(captured, surface, illuminance, luminance, image, report)
+
+    def _view_name(self, view: str | None) -> str:
+        if view is None:
+            return self.view_names[0]
+        if view not in self.view_names:
+            near = nearest_name(view, list(self.view_names))
+            raise InputError(
+                f"there is no view {view!r}, this rig has {' and '.join(self.view_names)}",
+                field="view",
+                remedy=f"did you mean {near!r}?" if near else None,
+            )
+        return view
+
+    def _report(self, captured: CameraFrame, surface: Surface) -> Report:
+        model = self.prepared.surface
+        clipped = 0 if captured.clipped is None else int(captured.clipped.sum())
+        return Report(
+            engine=self._engine.name,
+            adapter=self._engine.adapter,
+            photometry=self.prepared.photometry,
+            hole_pixels=surface.holes,
+            clipped_pixels=clipped,
+            occluder_triangles=len(model.shadow_casters.triangles),
+            occluder_triangles_before=model.occluder.triangles_before + len(model.casters.triangles),
+            occluder_error_m=model.occluder.error_m,
+            shadow_bias_m=model.bias.real_m,
+            maps_redrawn=self._engine.maps_redrawn,
+            stage_seconds=self.stage_seconds,
+            ignored_tables=self.prepared.ignored,
+        )
+
+
+def render(
+    scene: Scene,
+    time_seconds: float = 0.0,
+    view: str | None = None,
+    *,
+    engine: EngineName = "auto",
+) -> Frame:
+    """One frame of `scene`, all quantities as arrays; see `Renderer` for several.
+
+    >>> frame = andon.render(andon.load_scene("room.toml"))       # doctest: +SKIP
+    >>> frame.illuminance.lux.shape, frame.image.rgb.dtype        # doctest: +SKIP
+    ((500, 741, 3), dtype('uint8'))
+    """
+    return Renderer(scene, engine).render(time_seconds, view)
+
+
+def _make_engine(name: str, prepared: Any) -> Any:
+    from andon.engines.reference import ReferenceEngine
+
+    if name not in ENGINES:
+        raise InputError(f"must be one of {', '.join(ENGINES)}, got {name!r}", field="engine")
+    if name == "reference":
+        return ReferenceEngine(prepared)
+    from andon.engines.gpu import GpuEngine
+
+    try:
+        return GpuEngine(prepared)
+    except MachineError:
+        if name == "gpu":
+            raise
+        return ReferenceEngine(prepared)
+
+
+class _Clock:
+    """Wall time of named steps; `settle` is called after each so that its work is done."""
+
+    def __init__(self, settle: Any | None) -> None:
+        self.settle = settle
+        self.seconds: dict[str, float] = {}
+
+    def time(self, name: str, step: Any) -> Any:
+        start = perf_counter()
+        result = step()
+        if self.settle is not None:
+            self.settle()
+        self.seconds[name] = perf_counter() - start
+        return result

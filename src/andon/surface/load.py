@@ -1,0 +1,238 @@
+"""From a scene's [surface] and [[object]] tables to a `SurfaceModel`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.errors import InputError
+from andon.files.depth import read_depth_array
+from andon.files.meshes import read_mesh
+from andon.files.pictures import read_picture
+from andon.lenses import undistort
+from andon.quantities import Geometry, Material
+from andon.rays import face_normals
+from andon.scene import Scene
+from andon.spaces import View, rotate, transform_points
+from andon.surface.depth import DepthEncoding, depth_from_raw
+from andon.surface.model import EMPTY_GEOMETRY, ShadowBias, SurfaceModel
+from andon.surface.normals import normals_from_depth
+from andon.surface.occluder import Occluder, decimated, merged
+from andon.surface.textures import with_linear_textures
+from andon.surface.triangulate import triangulate_depth
+
+__all__ = ["load_surface", "object_geometry"]
+
+Float = NDArray[np.float64]
+
+# Lift of receivers before a shadow is looked up: a millimetre for exact meshes, more than stereo
+# and structured light scatter for depth images, and twice the decimation's own error.
+MESH_BIAS_M = 1e-3
+DEPTH_BIAS_M = 5e-3
+DECIMATION_MARGIN = 2.0
+
+# Camera axes of a file's normals → our camera frame (x right, y down, z forward).
+NORMAL_AXES = {"opencv": np.eye(3), "opengl": np.diag([1.0, -1.0, -1.0])}
+
+# Units and axes are the scene's for formats that do not define them; glTF is metres, +Y up.
+UNITLESS_SUFFIXES = {".obj", ".ply"}
+Y_UP_FROM_Z_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+
+
+def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
+    """The geometry of `scene` for its `views` (as captured: with their distortion).
+
+    Raises `InputError` for files that are missing, of the wrong size or without geometry.
+    """
+    objects, casters = _objects(scene)
+    if scene.surface is None:
+        model = SurfaceModel()
+    elif scene.surface.depth is not None:
+        model = _from_depth(scene, views)
+    elif scene.surface.mesh is not None:
+        model = _from_mesh(scene, next(iter(views.values())))
+    else:
+        normals = {name: _read_normals(scene, view) for name, view in views.items()}
+        model = SurfaceModel(normals=normals)
+    return replace(model, objects=objects, casters=casters)
+
+
+def _from_depth(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
+    assert scene.surface is not None
+    table = scene.surface.depth
+    assert table is not None
+    # One depth image belongs to one picture: the first view. Other views see its triangles.
+    name, view = next(iter(views.items()))
+    path = scene.path(table.file, "surface.depth.file")
+    encoding = DepthEncoding(
+        table.kind, table.scale_to_m, table.baseline_m, table.doffs_px, tuple(table.invalid)
+    )
+    seen_by = view if table.focal_px is None else replace(view, fx=table.focal_px)
+    depth = depth_from_raw(read_depth_array(path), seen_by, encoding, file=str(path))
+    depth = undistort(depth, view, method="nearest")
+    ideal = view.undistorted()
+    if scene.surface.normals is not None:
+        normals = _read_normals(scene, view)
+    else:
+        normals = normals_from_depth(depth, ideal, max_jump=table.max_jump)
+    real = triangulate_depth(depth, ideal, max_jump=table.max_jump)
+    if len(real.triangles) == 0:
+        raise InputError(
+            "no two neighbouring pixels have a depth",
+            file=str(path),
+            field="surface.depth",
+            remedy="check kind and scale_to_m",
+        )
+    closed = real
+    if table.thickness_m is not None:
+        closed = triangulate_depth(
+            depth, ideal, max_jump=table.max_jump, thickness_m=table.thickness_m
+        )
+    occluder = decimated(closed, scene.surface.occluder_triangles, view.position)
+    bias = max(DEPTH_BIAS_M, DECIMATION_MARGIN * occluder.error_m)
+    return SurfaceModel(real, {name: depth}, {name: normals}, occluder=occluder, bias=_bias(bias))
+
+
+def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
+    assert scene.surface is not None
+    assert scene.surface.mesh is not None
+    path = scene.path(scene.surface.mesh, "surface.mesh")
+    world_from_mesh = np.eye(4)
+    if scene.surface.world_from_mesh is not None:
+        world_from_mesh = np.array(scene.surface.world_from_mesh)
+    real = _read_geometry(scene, path, world_from_mesh)
+    if scene.surface.reflectance is not None:
+        real = _with_reflectance(real, scene.surface.reflectance)
+    occluder = decimated(merged(real), scene.surface.occluder_triangles, view.position)
+    bias = max(MESH_BIAS_M, DECIMATION_MARGIN * occluder.error_m)
+    return SurfaceModel(real, occluder=occluder, bias=_bias(bias))
+
+
+def _bias(real_m: float) -> ShadowBias:
+    return ShadowBias(real_m=real_m, object_m=MESH_BIAS_M)
+
+
+def _with_reflectance(geometry: Geometry, reflectance: Any) -> Geometry:
+    triple = tuple(float(x) for x in np.broadcast_to(reflectance, 3))
+    material = Material("surface", triple)  # type: ignore[arg-type]
+    return replace(geometry, materials=(material,), material_ids=None)
+
+
+def _read_geometry(scene: Scene, path: Path, world_from_mesh: Float) -> Geometry:
+    geometry = read_mesh(path).geometry
+    if path.suffix.lower() in UNITLESS_SUFFIXES:
+        scale = np.eye(4)
+        scale[:3, :3] = np.eye(3) if scene.scene.up == "y" else Y_UP_FROM_Z_UP
+        scale[:3, :3] *= scene.scene.metres_per_unit
+        world_from_mesh = world_from_mesh @ scale
+    return with_linear_textures(_placed(geometry, world_from_mesh))
+
+
+def _placed(geometry: Geometry, world_from_mesh: Float) -> Geometry:
+    positions = transform_points(world_from_mesh, geometry.positions)
+    triangles = geometry.triangles
+    if np.linalg.det(world_from_mesh[:3, :3]) < 0:  # a mirror turns triangles inside out
+        triangles = triangles[:, ::-1]
+    normals = geometry.normals
+    if normals is not None:
+        turned = normals @ np.linalg.inv(world_from_mesh[:3, :3])
+        length = np.linalg.norm(turned, axis=1, keepdims=True)
+        normals = np.divide(turned, length, out=np.zeros_like(turned), where=length > 0)
+    return replace(geometry, positions=positions, triangles=triangles, normals=normals)
+
+
+def object_geometry(scene: Scene, index: int, /) -> Geometry:
+    """The triangles of ``scene.object[index]`` in the world."""
+    entry = scene.object[index]
+    field = f"object[{index}]"
+    for key in ("animation", "key"):
+        if getattr(entry, key):
+            raise InputError(
+                f"{key} is in the schema but not rendered yet",
+                file=scene.file,
+                field=f"{field}.{key}",
+                remedy="leave it out: the object stands still",
+            )
+    path = scene.path(entry.mesh, f"{field}.mesh")
+    return _read_geometry(scene, path, entry.world_from_object())
+
+
+def _objects(scene: Scene) -> tuple[Geometry, Geometry]:
+    """All virtual objects as one geometry with their materials, and those that cast shadows."""
+    parts = [object_geometry(scene, index) for index in range(len(scene.object))]
+    if not parts:
+        return EMPTY_GEOMETRY, EMPTY_GEOMETRY
+    casting = [p for p, entry in zip(parts, scene.object, strict=True) if entry.casts_shadow]
+    return joined(parts), merged(*casting) if casting else EMPTY_GEOMETRY
+
+
+def joined(parts: list[Geometry], /) -> Geometry:
+    """One geometry from several, with normals, texture coordinates and materials."""
+    parts = [part if part.normals is not None else flat_shaded(part) for part in parts]
+    points = merged(*parts)
+    normals = np.concatenate([part.normals for part in parts if part.normals is not None])
+    uvs = np.concatenate(
+        [np.zeros((len(p.positions), 2)) if p.uvs is None else p.uvs for p in parts]
+    )
+    ids: list[NDArray[np.int32]] = []
+    first = 0
+    for part in parts:
+        own = part.material_ids
+        own = np.zeros(len(part.triangles), np.int32) if own is None else own
+        ids.append((own + first).astype(np.int32))
+        first += len(part.materials)
+    materials = tuple(material for part in parts for material in part.materials)
+    return replace(
+        points, normals=normals, uvs=uvs, material_ids=np.concatenate(ids), materials=materials
+    )
+
+
+def flat_shaded(part: Geometry, /) -> Geometry:
+    """The same triangles with three corners of their own each, and their plane's normal there."""
+    corner = part.triangles.ravel()
+    return replace(
+        part,
+        positions=part.positions[corner],
+        normals=np.repeat(face_normals(part), 3, axis=0),
+        uvs=None if part.uvs is None else part.uvs[corner],
+        triangles=np.arange(len(corner), dtype=np.int32).reshape(-1, 3),
+    )
+
+
+def _read_normals(scene: Scene, view: View) -> Float:
+    assert scene.surface is not None
+    assert scene.surface.normals is not None
+    path = scene.path(scene.surface.normals, "surface.normals")
+    picture = read_picture(path)
+    if picture.shape != view.shape:
+        height, width = picture.shape
+        raise InputError(
+            f"is {width}×{height} px but the camera is {view.width}×{view.height}",
+            file=str(path),
+            field="surface.normals",
+        )
+    values = np.asarray(picture.values, np.float64)
+    if picture.encoding == "srgb":  # codes hold −1…1, not light: no transfer function
+        values = values / np.iinfo(picture.values.dtype).max * 2 - 1
+    length = np.linalg.norm(values, axis=-1, keepdims=True)
+    # Background of normal maps is black (−1, −1, −1) or mid grey (0, 0, 0): neither is unit.
+    is_normal = np.abs(length - 1) < 0.2
+    if not is_normal.any():
+        raise InputError(
+            "has no pixel with a unit normal",
+            file=str(path),
+            field="surface.normals",
+            remedy="8 or 16 bit pictures hold n/2 + 1/2, EXR holds n",
+        )
+    with np.errstate(invalid="ignore", divide="ignore"):
+        normals = np.where(is_normal, values / length, np.nan)
+    normals = undistort(normals, view, method="nearest")
+    axes = scene.surface.normals_axes
+    if axes == "world":
+        return normals
+    return rotate(view.world_from_camera, normals @ NORMAL_AXES[axes].T)

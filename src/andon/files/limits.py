@@ -26,11 +26,14 @@ class Limits:
         pictures cannot add up to a large memory.
     max_file_bytes : 1 GiB, above an uncompressed 2²⁷ pixel half-float picture (768 MiB).
     max_text_bytes : 16 MiB of structured text (TOML, glTF's JSON, MTL), which grows tenfold when
-        parsed into objects. Meshes written as text count as files, not as text.
+        parsed into objects.
+    max_mesh_text_bytes : 256 MiB of OBJ or ASCII PLY, about 3 million triangles; its lines grow
+        tenfold as Python objects, too.
     max_camera_bytes : 1 MiB; a calibration with all its views has about 100 kB.
     max_vertices : 2²⁴, 1 GiB with normals and texture coordinates in float64.
     max_triangles : 2²⁴, the most that an Embree scene of a few GiB holds.
-    max_nodes : 10⁵ nodes, accessors, materials or YAML values; real files have below 10⁴.
+    max_nodes : 5·10⁵ tables and lists of JSON or YAML, and as many nodes, primitives or materials;
+        large exports have some 10⁴ nodes with four lists each.
     max_depth : 64 levels of nesting; Python's own parsers give up at about 1000.
     max_references : 1024 other files (textures, buffers, material libraries) per file.
     max_header_bytes : 64 KiB of text before the pixels of an HDR, PFM, PGM or PLY file.
@@ -41,10 +44,11 @@ class Limits:
     max_total_pixels: int = 2**28
     max_file_bytes: int = 2**30
     max_text_bytes: int = 2**24
+    max_mesh_text_bytes: int = 2**28
     max_camera_bytes: int = 2**20
     max_vertices: int = 2**24
     max_triangles: int = 2**24
-    max_nodes: int = 100_000
+    max_nodes: int = 500_000
     max_depth: int = 64
     max_references: int = 1024
     max_header_bytes: int = 2**16

@@ -25,7 +25,7 @@ def check_complexity(value: Any, file: str, limits: Limits) -> None:
         item, depth = stack.pop()
         if not isinstance(item, dict | list):
             continue
-        inner: Any = cast("dict[str, Any]", item).values() if isinstance(item, dict) else item
+        inner = cast("list[Any]", list(item.values()) if isinstance(item, dict) else item)
         count += 1
         if count > limits.max_nodes or depth > limits.max_depth:
             raise InputError(

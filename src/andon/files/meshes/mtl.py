@@ -98,9 +98,7 @@ def _numbers(text: str, key: str, name: str, path: Path) -> list[float]:
     except ValueError:
         values = []
     if not values or not all(map(math.isfinite, values)):
-        raise InputError(
-            f"{key} must be finite numbers, got {text[:60]!r}", file=path, field=name
-        )
+        raise InputError(f"{key} must be finite numbers, got {text[:60]!r}", file=path, field=name)
     return values
 
 

@@ -56,7 +56,9 @@ def read_obj(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> MeshFile:
     in a file that has some get their facet normal. A material that no library defines is gray.
     """
     path = Path(path)
-    lines = _sort_lines(open_bounded(path, limits), path, limits)
+    lines = _sort_lines(
+        open_bounded(path, limits, max_bytes=limits.max_mesh_text_bytes), path, limits
+    )
     counts, corners = _corners(lines, path)
     positions = _table(lines.vertices, 3, "v", path)
     uvs = _table(lines.uvs, 1, "vt", path)
@@ -183,7 +185,7 @@ def _indices(flat: list[str], path: Path) -> Int:
             raise InputError("face corners must be like 1, 1/2, 1//3 or 1/2/3", file=path)
         if (values == 0).any():
             raise InputError("indices count from 1 (or back from −1), one is 0", file=path)
-        out[np.ix_(rows, columns)] = values.reshape(-1, len(columns))
+        out[rows[:, None], np.array(columns)] = values.reshape(-1, len(columns))
         forms[rows] = -1
     if (forms != -1).any():
         raise InputError("face corners must be like 1, 1/2, 1//3 or 1/2/3", file=path)
@@ -198,9 +200,7 @@ def _check_range(corners: Int, sizes: tuple[int, int, int], path: Path) -> None:
             raise InputError(f"{name} indices must be 1…{size}, one is {shown}", file=path)
 
 
-def _fill_normals(
-    corners: Int, counts: Int, positions: Float, normals: Float
-) -> tuple[Int, Float]:
+def _fill_normals(corners: Int, counts: Int, positions: Float, normals: Float) -> tuple[Int, Float]:
     """Give faces with a corner without normal their facet normal."""
     starts = np.cumsum(counts) - counts
     lacking = np.minimum.reduceat(corners[:, 2], starts) < 0

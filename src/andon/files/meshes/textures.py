@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -35,11 +36,11 @@ class TextureStore:
             self._keep(key, read_picture(path, limits=self._remaining()))
         return self._known[key]
 
-    def from_bytes(self, data: bytes, place: str) -> NDArray[Any]:
+    def from_bytes(self, load: Callable[[], bytes], place: str) -> NDArray[Any]:
         """The texture embedded at `place` ("images[2]"): (h, w, 3) uint8 sRGB or float32."""
         if place not in self._known:
             name = f"{self._file}: {place}"
-            self._keep(place, decode_picture(data, name, self._remaining()))
+            self._keep(place, decode_picture(load(), name, self._remaining()))
         return self._known[place]
 
     def _remaining(self) -> Limits:

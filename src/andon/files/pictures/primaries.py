@@ -28,8 +28,8 @@ SAME_XY = 1e-3
 def _xyz_of_xy(xy: tuple[float, ...] | Float) -> Float:
     """XYZ (..., 3) with Y = 1 of chromaticities (..., 2)."""
     pairs: Float = np.asarray(xy, np.float64)
-    x, y = pairs[..., 0], pairs[..., 1]
-    return np.stack([x / y, np.ones_like(y), (1 - x - y) / y], axis=-1)
+    x, y = pairs[..., :1], pairs[..., 1:]
+    return np.concatenate([x, y, 1 - x - y], axis=-1) / y
 
 
 def _xyz_from_rgb(chromaticities: tuple[float, ...]) -> Float:

@@ -15,7 +15,7 @@ colour          keeps the photometric value    RGB × intensity, where blue mean
 colour temp.    Planck's law, one rule         a fit with a seam between two families
 =============== ============================== ==========================================
 
-Sources: KHR_lights_punctual (Khronos); Wyman, Sloan & Shirley 2013; ITU-R BT.709-6.
+Sources: KHR_lights_punctual (Khronos); ISO/CIE 11664-1; ITU-R BT.709-6.
 """
 
 from __future__ import annotations

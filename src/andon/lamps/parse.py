@@ -12,7 +12,7 @@ A piece between commas without an equals sign continues the value before it.
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import Any, cast
 
 from andon.errors import InputError, nearest_name
 
@@ -59,10 +59,10 @@ def _pairs(text: str, field: str) -> list[tuple[str, str]]:
 def _put(table: dict[str, Any], key: str, value: Any, field: str) -> None:
     *parents, last = key.split(".")
     for parent in parents:
-        entry = table.setdefault(parent, {})
+        entry: Any = table.setdefault(parent, {})
         if not isinstance(entry, dict):
             raise InputError(f"{parent} has a value already", field=f"{field} {key[:60]}")
-        table = entry
+        table = cast(dict[str, Any], entry)
     if last in table:
         raise InputError("is given twice", field=f"{field} {key[:60]}")
     table[last] = value

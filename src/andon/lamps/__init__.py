@@ -29,9 +29,9 @@ from andon.lamps.model import (
     Shadow,
     SkyLamp,
     SpotLamp,
-    resolve_lamps,
 )
 from andon.lamps.parse import parse_lamp_option
+from andon.lamps.resolve import resolve_lamps
 
 __all__ = [
     "DirectionalLamp",

@@ -47,10 +47,10 @@ MINIMUM_COSINE_STEP = 1e-9
 
 def _check_cone(inner_radians: float, outer_radians: float) -> None:
     narrowest, widest = MINIMUM_OUTER_RADIANS - 1e-12, np.pi / 2 + 1e-12
-    if not (0 <= inner_radians < outer_radians and narrowest <= outer_radians <= widest):
+    if not (0 <= inner_radians < outer_radians <= widest and outer_radians >= narrowest):
         raise InputError(
-            f"needs 0 ≤ inner < outer and 0.1 ≤ outer ≤ 90°, got {np.degrees(inner_radians):g}° and "
-            f"{np.degrees(outer_radians):g}°",
+            "needs 0 ≤ inner < outer and 0.1 ≤ outer ≤ 90°, got "
+            f"{np.degrees(inner_radians):g}° and {np.degrees(outer_radians):g}°",
             field="inner_degrees, outer_degrees",
         )
 

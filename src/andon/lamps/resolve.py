@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeGuard
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,14 @@ from andon.lamps.model import (
 
 if TYPE_CHECKING:  # scene imports pydantic; lamps built in Python do not need it
     from andon.scene import Scene
-    from andon.scene.lamp import DirectionalTable, HemisphereTable, PointTable, SkyTable, SpotTable
+    from andon.scene.lamp import (
+        AnyLamp,
+        DirectionalTable,
+        HemisphereTable,
+        PointTable,
+        SkyTable,
+        SpotTable,
+    )
     from andon.scene.lamp_base import LampTable, Shadowing
 
 __all__ = ["resolve_lamps"]
@@ -39,29 +46,36 @@ def resolve_lamps(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
     """The lamps of a scene at one moment, in the order of the file.
 
     Raises `InputError` for what the schema has and this version does not render: an area lamp is
-    never silently replaced by a point. Lamps with transport ``baked`` are left out: their light
-    is in the maps.
+    never silently replaced by a point.
     """
-    lamps: list[Lamp] = []
+    resolved: list[Lamp] = []
     for index, table in enumerate(scene.at(time_seconds).lamp):
         place = f"lamp[{index}]"
-        build = _BUILDERS.get(table.kind)
-        if build is None:
-            raise _not_rendered(
-                scene, f"{place}.kind", f"kind {table.kind!r}", _INSTEAD[table.kind]
-            )
-        for key, remedy in _LATER.items():
-            if getattr(table, key, None):
-                raise _not_rendered(scene, f"{place}.{key}", key, remedy)
-        if table.transport == "baked":
-            continue
-        lamp = build(table)
-        if not all(
-            np.isfinite(values).all() for values in vars(lamp).values() if _is_array(values)
-        ):
+        _refuse_later(scene, place, table)
+        lamp = _BUILDERS[table.kind](table)
+        arrays = [value for value in vars(lamp).values() if isinstance(value, np.ndarray)]
+        if not np.isfinite(np.concatenate(arrays)).all():
             raise InputError("is too large to compute with", file=scene.file, field=place)
-        lamps.append(lamp)
-    return tuple(lamps)
+        resolved.append(lamp)
+    return tuple(resolved)
+
+
+def _refuse_later(scene: Scene, place: str, table: AnyLamp) -> None:
+    """Raise `InputError` if the lamp is of a kind, or has a key, that is not rendered yet."""
+    faults = {"kind": _INSTEAD.get(table.kind)}
+    faults |= {key: remedy for key, remedy in _LATER.items() if getattr(table, key, None)}
+    if table.transport != "direct":
+        faults["transport"] = "use 'direct'"
+    for key, remedy in faults.items():
+        if remedy:
+            value = getattr(table, key)
+            what = f"{key} {value!r}" if isinstance(value, str) else key
+            raise InputError(
+                f"{what} is in the schema but not rendered yet",
+                file=scene.file,
+                field=f"{place}.{key}",
+                remedy=remedy,
+            )
 
 
 _POINT_INSTEAD = "use kind 'point' with the same flux_lm and a visible_radius_m"
@@ -81,15 +95,6 @@ _LATER = {
     "flicker": "use [[lamp.key]]",
     "angular_diameter_degrees": "use 0, a point at infinity",
 }
-
-
-def _not_rendered(scene: Scene, field: str, what: str, remedy: str) -> InputError:
-    rule = f"{what} is in the schema but not rendered yet"
-    return InputError(rule, file=scene.file, field=field, remedy=remedy)
-
-
-def _is_array(value: object) -> TypeGuard[Float]:
-    return isinstance(value, np.ndarray)
 
 
 def _unit(direction: tuple[float, float, float]) -> Float:

@@ -53,8 +53,8 @@ def resolve_lamps(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
         place = f"lamp[{index}]"
         _refuse_later(scene, place, table)
         lamp = _BUILDERS[table.kind](table)
-        arrays = [value for value in vars(lamp).values() if isinstance(value, np.ndarray)]
-        if not np.isfinite(np.concatenate(arrays)).all():
+        light = [getattr(lamp, key, 0.0) for key in _LIGHT]
+        if not all(np.isfinite(values).all() for values in light):
             raise InputError("is too large to compute with", file=scene.file, field=place)
         resolved.append(lamp)
     return tuple(resolved)
@@ -89,6 +89,13 @@ _INSTEAD = {
     "polygon": _FLAT_INSTEAD,
     "mesh": _POINT_INSTEAD,
 }
+# What can overflow: a huge flux in a narrow cone, or a colour far from white.
+_LIGHT = (
+    "intensity_cd",
+    "illuminance_lux",
+    "sky_illuminance_lux",
+    "ground_illuminance_lux",
+)
 # Keys whose meaning would be lost if they were ignored.
 _LATER = {
     "shell": "use transmittance × intensity_cd, and the shell's radius as visible_radius_m",

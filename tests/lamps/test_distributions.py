@@ -1,5 +1,7 @@
 """Spot cones: glTF's falloff, and a flux that is the integral of it."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -33,7 +35,7 @@ def test_flux_is_the_integral_over_the_sphere(inner, outer):
         return spot_attenuation(cosine, inner_radians=inner, outer_radians=outer)
 
     pieces = [-1, np.cos(outer), np.cos(inner), 1]  # smooth between the edges of the cone
-    numerical = sum(integral(attenuation, *pair) for pair in zip(pieces, pieces[1:], strict=False))
+    numerical = sum(integral(attenuation, *pair) for pair in pairwise(pieces))
     # For the narrowest cone 1 − cos θ itself has a relative rounding of 1e-10.
     assert spot_solid_angle_sr(inner, outer) == pytest.approx(2 * np.pi * numerical, rel=1e-9)
 

@@ -57,6 +57,7 @@ def test_texts_flags_and_inner_tables():
         ("kind=point,position=", "has no value"),
         ("kind=point,position=1,1,1,position=2,2,2", "is given twice"),
         ("kind=point,position=1,position.x=2", "has a value already"),
+        ("kind=point,a b=1", "must be key=value,key=value…, got 'a b=1'"),
         ("kind=point," + "x" * 10_000, "at most"),
     ],
 )

@@ -15,7 +15,7 @@ colour          keeps the photometric value    RGB × intensity, where blue mean
 colour temp.    Planck's law, one rule         a fit with a seam between two families
 =============== ============================== ==========================================
 
-Sources: KHR_lights_punctual (Khronos); Wyman, Sloan & Shirley 2013; ITU-R BT.709-6.
+Sources: KHR_lights_punctual (Khronos); ISO/CIE 11664-1; ITU-R BT.709-6.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from andon.lamps.model import (
     Shadow,
     SkyLamp,
     SpotLamp,
-    resolve_lamps,
 )
 from andon.lamps.parse import parse_lamp_option
+from andon.lamps.resolve import resolve_lamps
 
 __all__ = [
     "DirectionalLamp",

@@ -1,15 +1,13 @@
 """Colour of lamps: chromaticity and colour temperature to linear Rec.709 factors.
 
 One rule for colour temperature: **Planck's law at every temperature**, integrated with the CIE
-1931 2° observer. Incandescent lamps and flames are near-Planckian; a lamp sold as "6500 K" is
-near it too, and one rule has no step where two families would meet. A *daylight* lamp is the
-exception: CIE D illuminants lie 0.003 to 0.005 (Duv) on the green side of the Planckian locus, so
-D65 is given as ``chromaticity_xy = [0.3127, 0.3290]``, not as 6504 K.
+1931 2° observer. Flames and incandescent lamps are near-Planckian, most white lamps are sold by the
+nearest Planckian temperature, and one rule has no seam where two families would meet (Planck and
+daylight differ by 0.005 in y). Light that *is* daylight says so: ``daylight = true`` takes the
+CIE D series (CIE 15:2004, eqs. 3.1 to 3.4) at that temperature, 4000…25000 K; 6504 K is D65.
 
-The observer is the published fit of Wyman, Sloan & Shirley, "Simple Analytic Approximations to
-the CIE XYZ Color Matching Functions", JCGT 2(2), 2013, eq. 4 and table 1 (multi-lobe). Measured
-against the tabulated observer, chromaticities of 1000…40000 K come out within 0.002 in x and y;
-illuminant A (2856 K) is (0.4476, 0.4074), the fit gives that within 0.001.
+Lamps below about 1900 K (a candle's colour and redder) lie outside Rec.709: their blue factor is
+0, see `factors_from_rgb`.
 """
 
 from __future__ import annotations
@@ -21,12 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
+from andon.lamps.observer_1931 import MATCHING, WAVELENGTHS_NM
 from andon.quantities import LUMINANCE_WEIGHTS
 
 __all__ = [
     "NEUTRAL",
+    "chromaticity_of_daylight",
     "chromaticity_of_temperature",
-    "colour_matching_functions",
     "factors_from_chromaticity",
     "factors_from_rgb",
     "factors_from_temperature",
@@ -36,9 +35,10 @@ __all__ = [
 Float = NDArray[np.float64]
 
 TEMPERATURE_RANGE_K = (1000.0, 40000.0)
+DAYLIGHT_RANGE_K = (4000.0, 25000.0)
 
 # c₂ = h·c/k_B in m·K, from the exact SI constants of 2019. (Illuminant A was defined with an
-# older c₂: its 2856 K is 2855.5 K here; the chromaticity moves by less than 1e-4.)
+# older c₂: its 2856 K is 2855.5 K here; the chromaticity moves by 4e-5.)
 SECOND_RADIATION_CONSTANT = 6.62607015e-34 * 299792458 / 1.380649e-23
 
 # x, y of the primaries and of D65: ITU-R BT.709-6, table 1.
@@ -47,30 +47,6 @@ _WHITE = np.array([0.3127, 0.3290])
 
 NEUTRAL: Float = np.ones(3)
 NEUTRAL.flags.writeable = False
-
-# Wyman et al. 2013, table 1: rows of (observer channel, height, centre nm, width below, above).
-_LOBES = (
-    (0, 0.362, 442.0, 0.0624, 0.0374),
-    (0, 1.056, 599.8, 0.0264, 0.0323),
-    (0, -0.065, 501.1, 0.0490, 0.0382),
-    (1, 0.821, 568.8, 0.0213, 0.0247),
-    (1, 0.286, 530.9, 0.0613, 0.0322),
-    (2, 1.217, 437.0, 0.0845, 0.0278),
-    (2, 0.681, 459.0, 0.0385, 0.0725),
-)
-
-
-def colour_matching_functions(wavelengths_nm: NDArray[Any], /) -> Float:
-    """x̄, ȳ, z̄ (..., 3) of the CIE 1931 2° observer at wavelengths (...) in nm.
-
-    Wyman, Sloan & Shirley 2013, eq. 4: sums of Gaussians, each with two widths.
-    """
-    matching = np.zeros((*np.shape(wavelengths_nm), 3))
-    for channel, height, centre, below, above in _LOBES:
-        offset = np.asarray(wavelengths_nm, np.float64) - centre
-        scaled = offset * np.where(offset < 0, below, above)
-        matching[..., channel] += height * np.exp(-0.5 * scaled**2)
-    return matching
 
 
 def _xyz(chromaticity: NDArray[Any]) -> Float:
@@ -82,7 +58,8 @@ def _xyz(chromaticity: NDArray[Any]) -> Float:
 def _rgb_from_xyz() -> Float:
     """(3, 3), from the primaries and the white (SMPTE RP 177, section 3.3)."""
     primaries = _xyz(_PRIMARIES).T
-    return np.linalg.inv(primaries * np.linalg.solve(primaries, _xyz(_WHITE)))
+    scaled = primaries * np.linalg.solve(primaries, _xyz(_WHITE))
+    return np.linalg.inv(scaled).astype(np.float64)
 
 
 _RGB_FROM_XYZ = _rgb_from_xyz()
@@ -118,30 +95,47 @@ def factors_from_chromaticity(chromaticity_xy: NDArray[Any] | tuple[float, float
 def chromaticity_of_temperature(temperature_k: float, /) -> tuple[float, float]:
     """CIE 1931 (x, y) of a Planckian radiator; 1000…40000 K.
 
-    Planck's law per wavelength, λ⁻⁵/(exp(c₂/(λT)) − 1), summed in 1 nm steps from 360 to 830 nm,
-    the range of the CIE observer. Raises `InputError` outside the range.
+    Planck's law per wavelength, λ⁻⁵/(exp(c₂/(λT)) − 1), summed over the observer's table; within
+    1e-4 of the 1 nm sum. Raises `InputError` outside the range.
     """
-    lowest, highest = TEMPERATURE_RANGE_K
-    if not lowest <= temperature_k <= highest:
-        raise InputError(
-            f"must be {lowest:g}…{highest:g} K, got {temperature_k:g}", field="temperature_k"
-        )
-    wavelengths_nm = np.arange(360.0, 831.0)
-    metres = wavelengths_nm * 1e-9
-    spectrum = wavelengths_nm**-5.0 / np.expm1(SECOND_RADIATION_CONSTANT / (metres * temperature_k))
-    x, y, z = spectrum @ colour_matching_functions(wavelengths_nm)
+    _check_temperature(temperature_k, TEMPERATURE_RANGE_K)
+    exponent = SECOND_RADIATION_CONSTANT / (WAVELENGTHS_NM * 1e-9 * temperature_k)
+    x, y, z = (WAVELENGTHS_NM**-5 / np.expm1(exponent)) @ MATCHING
     return float(x / (x + y + z)), float(y / (x + y + z))
 
 
-def factors_from_temperature(temperature_k: float, /) -> Float:
-    """Rec.709 factors (3,) of photometric value 1 of a Planckian radiator; 1000…40000 K."""
-    return factors_from_chromaticity(chromaticity_of_temperature(float(temperature_k)))
+def chromaticity_of_daylight(temperature_k: float, /) -> tuple[float, float]:
+    """CIE 1931 (x, y) of a CIE D illuminant; 4000…25000 K (CIE 15:2004, eqs. 3.2 to 3.4)."""
+    _check_temperature(temperature_k, DAYLIGHT_RANGE_K)
+    cool = temperature_k > 7000
+    cubic = (0.237040, 0.24748e3, 1.9018e6, -2.0064e9) if cool else _WARM_DAYLIGHT
+    x = sum(c / temperature_k**power for power, c in enumerate(cubic))
+    return x, -3.000 * x**2 + 2.870 * x - 0.275
+
+
+_WARM_DAYLIGHT = (0.244063, 0.09911e3, 2.9678e6, -4.6070e9)
+
+
+def _check_temperature(temperature_k: float, limits: tuple[float, float]) -> None:
+    if not limits[0] <= temperature_k <= limits[1]:
+        raise InputError(
+            f"must be {limits[0]:g}…{limits[1]:g} K, got {temperature_k:g}", field="temperature_k"
+        )
+
+
+def factors_from_temperature(temperature_k: float, /, *, daylight: bool = False) -> Float:
+    """Rec.709 factors (3,) of photometric value 1 of a Planckian radiator, 1000…40000 K, or of
+    CIE daylight, 4000…25000 K.
+    """
+    locus = chromaticity_of_daylight if daylight else chromaticity_of_temperature
+    return factors_from_chromaticity(locus(float(temperature_k)))
 
 
 def rgb_factors(
     *,
     chromaticity_xy: tuple[float, float] | None = None,
     temperature_k: float | None = None,
+    daylight: bool = False,
     rgb: tuple[float, float, float] | None = None,
 ) -> Float:
     """Factors (3,) that turn a photometric value into a triple of channels; neutral by default.
@@ -154,5 +148,5 @@ def rgb_factors(
     if chromaticity_xy is not None:
         return factors_from_chromaticity(chromaticity_xy)
     if temperature_k is not None:
-        return factors_from_temperature(temperature_k)
+        return factors_from_temperature(temperature_k, daylight=daylight)
     return factors_from_rgb(np.array(rgb)) if rgb is not None else NEUTRAL.copy()

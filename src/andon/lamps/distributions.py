@@ -4,7 +4,7 @@ A spot is glTF's (Khronos, KHR_lights_punctual, "Inner and Outer Cone Angles"): 
 within the inner half-angle, none beyond the outer, between them the *square* of a ramp that is
 linear in the cosine::
 
-    I(θ)/I₀ = s²,   s = clamp((cos θ − cos θₒ) / max(ε, cos θᵢ − cos θₒ), 0, 1)
+    I(θ)/I₀ = s²,   s = clamp((cos θ − cos θₒ) / (cos θᵢ − cos θₒ), 0, 1)
 
                I/I₀
                 1 ┤■■■■■■■■■╲
@@ -12,6 +12,9 @@ linear in the cosine::
                   │           ╲▁
                 0 ┼─────────┬───┬──── θ
                             θᵢ  θₒ
+
+The extension's sample code keeps the denominator above 0.001, which dims every cone narrower than
+2.6° even on its axis. Here intensity *is* on the axis, so the floor only guards a division.
 """
 
 from __future__ import annotations
@@ -36,15 +39,18 @@ Float = NDArray[np.float64]
 
 POINT_SOLID_ANGLE_SR = 4 * np.pi
 
-# ε of the extension's sample code: keeps the ramp finite where both angles are equal.
-MINIMUM_COSINE_STEP = 1e-3
+# Narrower cones are lasers: in single precision 1 − cos θ has two digits left at this angle.
+MINIMUM_OUTER_RADIANS = np.radians(0.1)
+# Angles closer than this make a hard edge; far below 1 − cos 0.1° = 1.5e-6, so s = 1 on the axis.
+MINIMUM_COSINE_STEP = 1e-9
 
 
 def _check_cone(inner_radians: float, outer_radians: float) -> None:
-    if not 0 <= inner_radians < outer_radians <= np.pi / 2 + 1e-12:
+    narrowest, widest = MINIMUM_OUTER_RADIANS - 1e-12, np.pi / 2 + 1e-12
+    if not (0 <= inner_radians < outer_radians <= widest and outer_radians >= narrowest):
         raise InputError(
-            f"needs 0 ≤ inner < outer ≤ 90°, got {np.degrees(inner_radians):g}° and "
-            f"{np.degrees(outer_radians):g}°",
+            "needs 0 ≤ inner < outer and 0.1 ≤ outer ≤ 90°, got "
+            f"{np.degrees(inner_radians):g}° and {np.degrees(outer_radians):g}°",
             field="inner_degrees, outer_degrees",
         )
 
@@ -52,11 +58,12 @@ def _check_cone(inner_radians: float, outer_radians: float) -> None:
 def spot_coefficients(inner_radians: float, outer_radians: float) -> tuple[float, float]:
     """(scale, offset) of the ramp: ``s = clamp(cos θ · scale + offset, 0, 1)``.
 
-    What a shader needs per lamp. Angles are half-angles, 0 ≤ inner < outer ≤ π/2.
+    What a shader needs per lamp. Half-angles: 0 ≤ inner < outer, 0.1° ≤ outer ≤ π/2.
     """
     _check_cone(inner_radians, outer_radians)
-    step = np.cos(inner_radians) - np.cos(outer_radians)
-    scale = 1 / max(MINIMUM_COSINE_STEP, float(step))
+    # cos a − cos b as a product: the difference would lose digits for narrow cones.
+    middle, half = (outer_radians + inner_radians) / 2, (outer_radians - inner_radians) / 2
+    scale = 1 / max(MINIMUM_COSINE_STEP, float(2 * np.sin(middle) * np.sin(half)))
     return float(scale), float(-np.cos(outer_radians) * scale)
 
 
@@ -71,18 +78,12 @@ def spot_attenuation(
 def spot_solid_angle_sr(inner_radians: float, outer_radians: float) -> float:
     """∫ I(θ)/I₀ dω over the sphere in sr: flux in lm = this × intensity on the axis in cd.
 
-    Closed form. With c = cos θ, dω = 2π dc; the ramp reaches s = 1 at c₁ = cos θₒ + step, and
-    ∫ s² dc over a linear ramp is step/3. So Ω = 2π·((1 − c₁) + step/3), step = c₁ − cos θₒ.
-    Where ε makes the ramp longer than the cone (c₁ > 1), the ramp ends at c = 1 with
-    s₁ = (1 − cos θₒ)/step and Ω = 2π·step·s₁³/3.
+    Closed form. With c = cos θ, dω = 2π dc; s rises from 0 at cos θₒ to 1 over `step` and stays.
+    ∫ s² over a linear ramp is step/3, so Ω = 2π·((1 − cos θₒ) − step + step/3).
     """
     scale, _ = spot_coefficients(inner_radians, outer_radians)
-    # 1 − cos θ as 2·sin²(θ/2): the difference would lose digits for narrow cones.
-    cap = 2 * np.sin(outer_radians / 2) ** 2
-    step = 1 / scale
-    if cap <= step:
-        return float(2 * np.pi * step * (cap / step) ** 3 / 3)
-    return float(2 * np.pi * (cap - step + step / 3))
+    cap = 2 * np.sin(outer_radians / 2) ** 2  # 1 − cos θₒ, without losing digits
+    return float(2 * np.pi * (cap - 2 / 3 / scale))
 
 
 def flux_lm_from_intensity(intensity_cd: float, /, solid_angle_sr: float) -> float:

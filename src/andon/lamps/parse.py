@@ -12,13 +12,14 @@ A piece between commas without an equals sign continues the value before it.
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import Any, cast
 
 from andon.errors import InputError, nearest_name
 
 __all__ = ["parse_lamp_option"]
 
 MAX_OPTION_CHARACTERS = 10_000
+_KEY = re.compile(r"[A-Za-z_][A-Za-z0-9_.]{0,99}")
 
 
 def parse_lamp_option(text: str, /, *, field: str = "--lamp") -> dict[str, Any]:
@@ -42,9 +43,9 @@ def _pairs(text: str, field: str) -> list[tuple[str, str]]:
     pairs: list[tuple[str, str]] = []
     for piece in text.split(","):
         key, equals, value = piece.partition("=")
-        if equals:
+        if equals and _KEY.fullmatch(key.strip()):
             pairs.append((key.strip(), value.strip()))
-        elif pairs:
+        elif pairs and not equals:
             key, value = pairs[-1]
             pairs[-1] = (key, f"{value},{piece.strip()}")
         else:
@@ -59,12 +60,12 @@ def _pairs(text: str, field: str) -> list[tuple[str, str]]:
 def _put(table: dict[str, Any], key: str, value: Any, field: str) -> None:
     *parents, last = key.split(".")
     for parent in parents:
-        entry = table.setdefault(parent, {})
+        entry: Any = table.setdefault(parent, {})
         if not isinstance(entry, dict):
-            raise InputError(f"{parent} has a value already", field=f"{field} {key[:60]}")
-        table = entry
+            raise InputError(f"{parent} has a value already", field=f"{field} {key}")
+        table = cast(dict[str, Any], entry)
     if last in table:
-        raise InputError("is given twice", field=f"{field} {key[:60]}")
+        raise InputError("is given twice", field=f"{field} {key}")
     table[last] = value
 
 

@@ -37,10 +37,10 @@ def _lines(name: str, table: Mapping[str, Any]) -> Iterator[str]:
         else:
             yield f"{_key(key)} = {_value(entries[key])}"
     for path, value in later:
-        tables = [value] if isinstance(value, Mapping) else value
-        for entry in tables:
-            lines = list(_lines(path, cast(Mapping[str, Any], entry)))
-            if not isinstance(value, Mapping):
+        single = isinstance(value, Mapping)
+        for entry in cast(list[Mapping[str, Any]], [value] if single else value):
+            lines = list(_lines(path, entry))
+            if not single:
                 yield from ("", f"[[{path}]]")
             elif not lines or lines[0]:  # a table that only holds tables needs no head
                 yield from ("", f"[{path}]")

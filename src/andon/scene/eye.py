@@ -200,3 +200,13 @@ class Display(Table):
         default=False,
         description="Noise of half a step against banding.",
     )
+
+    @model_validator(mode="after")
+    def _check_peak(self) -> Display:
+        if self.mode == "ost" and self.peak_luminance_cd_m2 is None:
+            raise refusal(
+                "mode 'ost' needs it",
+                key="peak_luminance_cd_m2",
+                remedy="state the luminance of the display's white in cd/m²",
+            )
+        return self

@@ -58,9 +58,9 @@ class SpotTable(_Bulb):
         default=0.0,
         description="Half-angle of the full-intensity cone in degrees, 0 ≤ inner < outer.",
     )
-    outer_degrees: Annotated[float, Field(gt=0, le=90)] = Field(
+    outer_degrees: Annotated[float, Field(ge=0.1, le=90)] = Field(
         default=45.0,
-        description="Half-angle where the light ends in degrees, inner < outer ≤ 90.",
+        description="Half-angle where the light ends in degrees, inner < outer, 0.1…90.",
     )
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""What all lamps of a scene file share: names, colour, shells, keyframes, photometric rules."""
+"""What all lamps of a scene file share: names, colour, motion, and the rules on them."""
 
 from __future__ import annotations
 
@@ -10,121 +10,22 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from andon.scene.base import (
-    Fraction,
-    FractionTriple,
     Name,
     NonNegative,
     Positive,
     Reference,
     Table,
-    Vector,
     refusal,
     unknown_key,
 )
-from andon.scene.geometry import Direction
+from andon.scene.lamp_parts import Flicker, LampKey, Shell
 
-__all__ = ["PHOTOMETRIC_KEYS", "Flicker", "LampKey", "LampTable", "Shell"]
+__all__ = ["LampTable", "Shadowing", "Shelled"]
 
-PHOTOMETRIC_KEYS = ("intensity_cd", "flux_lm", "luminance_cd_m2", "illuminance_lux")
 _COLOUR_KEYS = ("chromaticity_xy", "temperature_k", "rgb")
 
 # Two consecutive key directions closer to opposite than this have no defined way between them.
 OPPOSITE_COSINE = -1 + 1e-9
-
-
-class LampKey(Table):
-    """One keyframe of a lamp. Between keys, values run linearly; outside, they stay."""
-
-    time_seconds: float = Field(description="Session time of the key in seconds.")
-    position: Vector | None = Field(
-        default=None,
-        description="Position in metres, world.",
-    )
-    direction: Direction | None = Field(
-        default=None,
-        description="Direction, world; turns along the great circle between keys.",
-    )
-    intensity_cd: NonNegative | None = Field(
-        default=None,
-        description="Luminous intensity in cd.",
-    )
-    flux_lm: NonNegative | None = Field(
-        default=None,
-        description="Luminous flux in lm.",
-    )
-    luminance_cd_m2: NonNegative | None = Field(
-        default=None,
-        description="Luminance in cd/m².",
-    )
-    illuminance_lux: NonNegative | None = Field(
-        default=None,
-        description="Illuminance in lx.",
-    )
-    temperature_k: Annotated[float, Field(ge=1000, le=40000)] | None = Field(
-        default=None,
-        description="Colour temperature in K, 1000…40000.",
-    )
-
-    @property
-    def animated(self) -> tuple[str, ...]:
-        """Names of the quantities that this key sets."""
-        names = (name for name in LampKey.model_fields if name != "time_seconds")
-        return tuple(name for name in names if getattr(self, name) is not None)
-
-
-class Shell(Table):
-    """The translucent shell of a luminous body: lit from inside, it emits outside."""
-
-    radius_m: Positive | None = Field(
-        default=None,
-        description="Radius of a spherical shell in metres.",
-    )
-    mesh: Reference | None = Field(
-        default=None,
-        description="Mesh file of a shell of any other form.",
-    )
-    transmittance: FractionTriple = Field(
-        default=(0.5, 0.5, 0.5),
-        description="Net diffuse transmittance t in [0, 1], interreflection included; one number "
-        "or three channels.",
-    )
-    absorptance: Fraction = Field(
-        default=0.0,
-        description="Share of the light that an open shell takes, [0, 1]; 1 − t at most.",
-    )
-
-    @model_validator(mode="after")
-    def _one_form(self) -> Shell:
-        if (self.radius_m is None) == (self.mesh is None):
-            raise refusal("exactly one of radius_m, mesh is allowed")
-        if self.absorptance + max(self.transmittance) > 1 + 1e-9:
-            raise refusal("absorptance + transmittance must be ≤ 1", key="absorptance")
-        return self
-
-
-class Flicker(Table):
-    """Irregular brightness S(t) of mean 1: candles, sun through leaves."""
-
-    exponent: Annotated[float, Field(gt=1, le=3)] = Field(
-        default=1.8,
-        description="z of the intermittent map S ← S + u·S^z mod 1; 1/f-like above 1.5.",
-    )
-    steps_per_second: Positive = Field(
-        default=30.0,
-        description="Iterations of the map per second.",
-    )
-    amount: Fraction = Field(
-        default=1.0,
-        description="0 steady … 1 the full swing of S.",
-    )
-    gaps: Annotated[int, Field(ge=1, le=100_000)] = Field(
-        default=1,
-        description="Independent flickers whose mean is taken (gaps between leaves).",
-    )
-    mask: Reference | None = Field(
-        default=None,
-        description="Picture of the gaps, white is open.",
-    )
 
 
 class LampTable(Table):
@@ -144,6 +45,11 @@ class LampTable(Table):
     temperature_k: Annotated[float, Field(ge=1000, le=40000)] | None = Field(
         default=None,
         description="Colour temperature in K, 1000…40000.",
+    )
+    daylight: bool = Field(
+        default=False,
+        description="temperature_k is that of CIE daylight (D series), 4000…25000 K, instead of a "
+        "Planckian radiator.",
     )
     rgb: tuple[NonNegative, NonNegative, NonNegative] | None = Field(
         default=None,
@@ -199,10 +105,12 @@ class LampTable(Table):
 
     def _check_light(self) -> None:
         given = [key for key in self.kinds_of_light if getattr(self, key) is not None]
-        if len(given) > 1 or (self.light_required and not given):
-            many = "exactly one" if self.light_required else "at most one"
-            came = " and ".join(given) or "none"
-            raise refusal(f"{many} of {', '.join(self.kinds_of_light)} is allowed, got {came}")
+        if not given and self.light_required:
+            raise refusal(f"{' or '.join(self.kinds_of_light)} is required")
+        if len(given) > 1:
+            one = "exactly one" if self.light_required else "at most one"
+            choices = ", ".join(self.kinds_of_light)
+            raise refusal(f"{one} of {choices} is allowed, got {' and '.join(given)}")
 
     def _check_colour(self) -> None:
         given = [key for key in _COLOUR_KEYS if getattr(self, key) is not None]
@@ -210,6 +118,11 @@ class LampTable(Table):
             raise refusal(
                 f"at most one of {', '.join(_COLOUR_KEYS)} is allowed, got {' and '.join(given)}"
             )
+        kelvins = [key.temperature_k for key in self.key] + [self.temperature_k]
+        if self.daylight and not all(4000 <= kelvin <= 25000 for kelvin in kelvins if kelvin):
+            raise refusal("daylight needs 4000…25000 K", key="temperature_k")
+        if self.daylight and self.temperature_k is None:
+            raise refusal("daylight needs temperature_k", key="daylight", remedy="state it in K")
         if self.chromaticity_xy is not None and sum(self.chromaticity_xy) > 1:
             raise refusal(f"x + y must be ≤ 1, got {self.chromaticity_xy}", key="chromaticity_xy")
         if self.rgb is not None and not max(self.rgb) > 0:

@@ -31,6 +31,8 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     scene.
     """
     path = Path(path)
+    if path.exists() and not path.is_file():  # a pipe would block, a device never end
+        raise InputError("must be a regular file", file=str(path))
     try:
         with path.open("rb") as stream:
             data = stream.read(MAX_SCENE_BYTES + 1)

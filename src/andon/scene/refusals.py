@@ -64,15 +64,15 @@ def input_error(error: ValidationError, file: str) -> InputError:
 
 def _distinct(faults: list[ErrorDetails]) -> list[ErrorDetails]:
     """The faults, where one number that stands for three channels counts once and has no index."""
-    distinct: list[ErrorDetails] = []
+    groups: dict[tuple[object, int], list[ErrorDetails]] = {}
     for fault in faults:
-        parent = fault["loc"][:-1]
-        same = [f for f in faults if f["loc"][:-1] == parent and f["input"] is fault["input"]]
-        if len(same) == 3 and isinstance(fault["loc"][-1], int):
-            if fault is not same[0]:
-                continue
-            fault["loc"] = parent
-        distinct.append(fault)
+        groups.setdefault((fault["loc"][:-1], id(fault["input"])), []).append(fault)
+    distinct: list[ErrorDetails] = []
+    for same in groups.values():
+        if len(same) == 3 and isinstance(same[0]["loc"][-1], int):
+            same[0]["loc"] = same[0]["loc"][:-1]
+            same = same[:1]
+        distinct += same
     return distinct
 
 

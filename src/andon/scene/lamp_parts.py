@@ -1,0 +1,116 @@
+"""Tables inside [[lamp]]: keyframes, the shell of a luminous body, flicker."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from andon.scene.base import (
+    Fraction,
+    FractionTriple,
+    NonNegative,
+    Positive,
+    Reference,
+    Table,
+    Vector,
+    refusal,
+)
+from andon.scene.geometry import Direction
+
+__all__ = ["Flicker", "LampKey", "Shell"]
+
+
+class LampKey(Table):
+    """One keyframe of a lamp. Between keys, values run linearly; outside, they stay."""
+
+    time_seconds: float = Field(description="Session time of the key in seconds.")
+    position: Vector | None = Field(
+        default=None,
+        description="Position in metres, world.",
+    )
+    direction: Direction | None = Field(
+        default=None,
+        description="Direction, world; turns along the great circle between keys.",
+    )
+    intensity_cd: NonNegative | None = Field(
+        default=None,
+        description="Luminous intensity in cd.",
+    )
+    flux_lm: NonNegative | None = Field(
+        default=None,
+        description="Luminous flux in lm.",
+    )
+    luminance_cd_m2: NonNegative | None = Field(
+        default=None,
+        description="Luminance in cd/m².",
+    )
+    illuminance_lux: NonNegative | None = Field(
+        default=None,
+        description="Illuminance in lx.",
+    )
+    temperature_k: Annotated[float, Field(ge=1000, le=40000)] | None = Field(
+        default=None,
+        description="Colour temperature in K, 1000…40000.",
+    )
+
+    @property
+    def animated(self) -> tuple[str, ...]:
+        """Names of the quantities that this key sets."""
+        names = (name for name in LampKey.model_fields if name != "time_seconds")
+        return tuple(name for name in names if getattr(self, name) is not None)
+
+
+class Shell(Table):
+    """The translucent shell of a luminous body: lit from inside, it emits outside."""
+
+    radius_m: Positive | None = Field(
+        default=None,
+        description="Radius of a spherical shell in metres.",
+    )
+    mesh: Reference | None = Field(
+        default=None,
+        description="Mesh file of a shell of any other form.",
+    )
+    transmittance: FractionTriple = Field(
+        default=(0.5, 0.5, 0.5),
+        description="Net diffuse transmittance t in [0, 1], interreflection included; one number "
+        "or three channels.",
+    )
+    absorptance: Fraction = Field(
+        default=0.0,
+        description="Share of the light that an open shell takes, [0, 1]; 1 − t at most.",
+    )
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Shell:
+        if (self.radius_m is None) == (self.mesh is None):
+            raise refusal("exactly one of radius_m, mesh is allowed")
+        if self.absorptance + max(self.transmittance) > 1 + 1e-9:
+            raise refusal("absorptance + transmittance must be ≤ 1", key="absorptance")
+        return self
+
+
+class Flicker(Table):
+    """Irregular brightness S(t) of mean 1: candles, sun through leaves."""
+
+    exponent: Annotated[float, Field(gt=1, le=3)] = Field(
+        default=1.8,
+        description="z of the intermittent map S ← S + u·S^z mod 1; 1/f-like above 1.5.",
+    )
+    steps_per_second: Positive = Field(
+        default=30.0,
+        description="Iterations of the map per second.",
+    )
+    amount: Fraction = Field(
+        default=1.0,
+        description="0 steady … 1 the full swing of S.",
+    )
+    gaps: Annotated[int, Field(ge=1, le=100_000)] = Field(
+        default=1,
+        description="Independent flickers whose mean is taken (gaps between leaves).",
+    )
+    mask: Reference | None = Field(
+        default=None,
+        description="Picture of the gaps, white is open.",
+    )

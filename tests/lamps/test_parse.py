@@ -1,0 +1,86 @@
+"""The --lamp option."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from andon.errors import InputError
+from andon.lamps import parse_lamp_option
+from andon.scene import scene_from_dict
+
+BULB = {
+    "kind": "point",
+    "position": [0.5, 0.2, -1.5],
+    "flux_lm": 800,
+    "temperature_k": 2700,
+}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "kind=point,position=0.5,0.2,-1.5,flux_lm=800,temperature_k=2700",
+        "kind=point,position=0.5;0.2;-1.5,flux_lm=800,temperature_k=2700",
+        "kind=point,position=[0.5,0.2,-1.5],flux_lm=800,temperature_k=2700",
+        "kind=point,position=[0.5 0.2 -1.5],flux_lm=800,temperature_k=2700",
+        " kind = point , position = 0.5, 0.2, -1.5 , flux_lm = 800 , temperature_k = 2.7e3 ",
+        "flux_lm=800,position=5e-1 .2 -1.5,temperature_k=2700,kind=point",
+    ],
+)
+def test_spellings(text):
+    assert parse_lamp_option(text) == BULB
+    (lamp,) = scene_from_dict({"lamp": [parse_lamp_option(text)]}).lamp
+    assert lamp.position == (0.5, 0.2, -1.5)
+
+
+def test_texts_flags_and_inner_tables():
+    table = parse_lamp_option(
+        "kind=point,name=my lamp,position=0,0,0,intensity_cd=1,shadow=false,"
+        "shell.radius_m=0.1,shell.transmittance=0.2,0.3,0.4"
+    )
+    assert table["name"] == "my lamp"
+    assert table["shadow"] is False
+    assert table["shell"] == {"radius_m": 0.1, "transmittance": [0.2, 0.3, 0.4]}
+    scene_from_dict({"lamp": [table]})
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("", "must be key=value"),
+        ("point", "must be key=value"),
+        ("position=0,0,0", "kind is required"),
+        ("kind=pont,position=0,0,0", "did you mean 'point'?"),
+        ("kind=3", "must be one of point"),
+        ("kind=point,positon=0,0,0", "did you mean 'position'?"),
+        ("kind=point,qqqq=0", "known keys: "),
+        ("kind=point,position=", "has no value"),
+        ("kind=point,position=1,1,1,position=2,2,2", "is given twice"),
+        ("kind=point,position=1,position.x=2", "has a value already"),
+        ("kind=point,a b=1", "must be key=value,key=value…, got 'a b=1'"),
+        ("kind=point," + "x" * 10_000, "at most"),
+    ],
+)
+def test_mistakes_are_named(text, expected):
+    with pytest.raises(InputError) as caught:
+        parse_lamp_option(text)
+    assert expected in str(caught.value)
+    assert str(caught.value).startswith("--lamp")
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 500
+
+
+@given(st.text(alphabet="kindpointposition=,;.[] 0123456789-einfa\n", max_size=60))
+def test_any_text_gives_a_table_or_a_clear_error(text):
+    try:
+        table = parse_lamp_option(text)
+    except InputError as error:
+        assert "\n" not in str(error)  # noqa: PT017
+    else:
+        assert "kind" in table
+
+
+@given(st.tuples(*[st.floats(allow_nan=False, allow_infinity=False)] * 3))
+def test_numbers_come_back_exactly(position):
+    text = "kind=point,position=" + ",".join(map(repr, position))
+    assert tuple(parse_lamp_option(text)["position"]) == position

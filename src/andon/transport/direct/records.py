@@ -139,7 +139,11 @@ def pack_lamps(
         for group in groups
         for lamp in group
     ]
-    return np.concatenate(records) if records else np.zeros(0, LAMP_RECORD.dtype)
+    # Not np.concatenate: it drops the padding between fields.
+    table = np.zeros(len(records), LAMP_RECORD.dtype)
+    for row, record in enumerate(records):
+        table[row] = record[0]
+    return table
 
 
 def _pack(lamp: Lamp, layer: int, frame: PlanarFrame | None, size: int) -> NDArray[Any]:

@@ -21,7 +21,7 @@ fn radial_distance(direction: vec3f, face_size: f32) -> f32 {
   face += select(0, 1, q.z < 0.0);
   let place = (q.xy / along * 0.5 + 0.5) * face_size;
   let texel = min(floor(place), vec2f(face_size - 1.0));
-  let at = vec2i(texel) + vec2i(face_size) * vec2i(face % 3, face / 3);
+  let at = vec2i(texel) + i32(face_size) * vec2i(face % 3, face / 3);
   let depth = textureLoad(face_depth, at, 0);
   if (depth <= 0.0) { return FAR; }
   // Clamped: the plane of a triangle seen edge-on runs away within half a texel.

@@ -35,7 +35,7 @@ fn objects(point: SurfacePoint, lux: vec3f, real: vec3f) -> vec3f {
 }
 
 fn point_at(pixel: vec2f) -> SurfacePoint {
-  return surface_point(textureLoad(gbuffer, vec2i(pixel), 0), view, pixel);
+  return surface_point(textureLoad(gbuffer, vec2i(pixel), 0), pixel);
 }
 
 @fragment fn relit(@builtin(position) pixel: vec4f) -> @location(0) vec4f {

@@ -10,15 +10,15 @@
 
 @fragment fn lamp_disc(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
   let packed = textureLoad(gbuffer, vec2i(pixel.xy), 0);
-  let ray = ray_planar(view, pixel.xy);
+  let ray = ray_planar(pixel.xy);
   let surface_m = select(1e30, bitcast<f32>(packed.x) * length(ray), (packed.w & VALID) != 0u);
-  let direction = normalize(world_direction(view, ray));
+  let direction = normalize(world_direction(ray));
   let angle = 2.0 * asin(clamp(0.5 * length(direction - disc.direction), 0.0, 1.0));
   // Angle of a pixel, from its neighbour: the square root of its solid angle for square pixels.
-  let along_x = normalize(ray_planar(view, pixel.xy + vec2f(0.5, 0.0)))
-              - normalize(ray_planar(view, pixel.xy - vec2f(0.5, 0.0)));
-  let along_y = normalize(ray_planar(view, pixel.xy + vec2f(0.0, 0.5)))
-              - normalize(ray_planar(view, pixel.xy - vec2f(0.0, 0.5)));
+  let along_x = normalize(ray_planar(pixel.xy + vec2f(0.5, 0.0)))
+              - normalize(ray_planar(pixel.xy - vec2f(0.5, 0.0)));
+  let along_y = normalize(ray_planar(pixel.xy + vec2f(0.0, 0.5)))
+              - normalize(ray_planar(pixel.xy - vec2f(0.0, 0.5)));
   let pixel_angle = sqrt(max(length(cross(along_x, along_y)), 1e-16));
   let cover = clamp((disc.radius_radians - angle) / pixel_angle + 0.5, 0.0, 1.0);
   let seen = cover * select(0.0, 1.0, disc.distance_m < surface_m);

@@ -12,6 +12,7 @@ from andon import gbuffer
 from andon.composite.model import Ambient
 from andon.composite.records import AMBIENT_RECORD, DISC_RECORD, STRUCTS, pack_ambient
 from andon.composite.reference import lamp_luminance
+from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.passes import FullscreenPass
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
@@ -60,25 +61,27 @@ class CompositeStage:
         table = np.zeros((MAX_MATERIALS, 4), np.float32)
         table[: len(emitted_cd_m2), :3] = emitted_cd_m2[:MAX_MATERIALS]
         write_buffer(gpu, self._emitted, table)
-        self.resources = {
-            2: self._ambient,
-            3: self._captured.view,
-            4: self._per_lux.view,
-            5: self._emitted,
+        self.resources: dict[int, tuple[str, Any]] = {
+            2: ("uniform", self._ambient),
+            3: ("float", self._captured.view),
+            4: ("float", self._per_lux.view),
+            5: ("uniform", self._emitted),
         }
+        scene = bind_group(gpu, {0: ("uint", gbuffer_view), 1: ("uniform", view_buffer)})
+        self._disc_buffers = [
+            uniform_buffer(gpu, DISC_RECORD.dtype.itemsize, "disc") for _ in range(MAX_DISCS)
+        ]
+        self._disc_groups = [bind_group(gpu, {0: ("uniform", b)}) for b in self._disc_buffers]
         self._discs = FullscreenPass(
             gpu,
             "andon/composite/discs.wgsl",
             "lamp_disc",
             ["rgba16float"],
+            [scene, self._disc_groups[0]],
             structs=STRUCTS | gbuffer.STRUCTS,
+            variants=gbuffer.projection_variant(view),
             blend=OVER,
         )
-        self._scene_group = self._discs.bind(0, {0: gbuffer_view, 1: view_buffer})
-        self._disc_buffers = [
-            uniform_buffer(gpu, DISC_RECORD.dtype.itemsize, "disc") for _ in range(MAX_DISCS)
-        ]
-        self._disc_groups = [self._discs.bind(1, {0: buffer}) for buffer in self._disc_buffers]
 
     def load(self, frame: CameraFrame) -> None:
         """Takes a captured frame."""
@@ -109,7 +112,7 @@ class CompositeStage:
             color_attachments=[{"view": target, "load_op": "load", "store_op": "store"}],
         )
         render.set_pipeline(self._discs.pipeline)
-        render.set_bind_group(0, self._scene_group)
+        render.set_bind_group(0, self._discs.groups[0].group)
         for slot, (lamp, rectangle) in enumerate(zip(drawn, rectangles, strict=True)):
             if rectangle is None:
                 continue
@@ -122,7 +125,7 @@ class CompositeStage:
                 radius_radians=np.arcsin(min(1.0, lamp.visible_radius_m / distance)),
             )
             write_buffer(self.gpu, self._disc_buffers[slot], record)
-            render.set_bind_group(1, self._disc_groups[slot])
+            render.set_bind_group(1, self._disc_groups[slot].group)
             render.set_scissor_rect(*rectangle)
             render.draw(3)
         render.end()

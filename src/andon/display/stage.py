@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from andon.display.model import Exposure
+from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.layout import HostStruct
 from andon.gpu.passes import FullscreenPass
@@ -40,27 +41,33 @@ class DisplayStage:
         self.gpu = gpu
         size = (luminance.width, luminance.height)
         self.image = make_texture(gpu, "rgba8unorm", *size, label="display")
-        entry = f"encode_{response.kind}"
-        self._pass = FullscreenPass(
-            gpu, "andon/display/display.wgsl", entry, ["rgba8unorm"], structs=STRUCTS
-        )
         settings = uniform_buffer(gpu, DISPLAY_RECORD.dtype.itemsize, "display")
         scale = exposure.units_per_cd_m2 or 1 / luminance_per_unit
         record = DISPLAY_RECORD.pack(
             exposure=scale * luminance_per_unit, gamma=response.gamma, tone=TONES[exposure.tone]
         )
         write_buffer(gpu, settings, record)
-        resources: dict[int, Any] = {0: luminance.view, 1: settings}
+        resources: dict[int, tuple[str, Any]] = {
+            0: ("float", luminance.view),
+            1: ("uniform", settings),
+        }
         if response.kind == "curve":
             curve = make_texture(gpu, "rgba32float", CURVE_SAMPLES, 1, label="response")
             linear = np.linspace(0, 1, CURVE_SAMPLES)[:, None] ** 2 * np.ones(3)
             curve.write(np.column_stack([response.encode(linear), np.ones(CURVE_SAMPLES)])[None])
-            resources[2] = curve.view
-        self._group = self._pass.bind(0, resources)
+            resources[2] = ("float", curve.view)
+        self._pass = FullscreenPass(
+            gpu,
+            "andon/display/display.wgsl",
+            f"encode_{response.kind}",
+            ["rgba8unorm"],
+            [bind_group(gpu, resources, "display")],
+            structs=STRUCTS,
+        )
 
     def encode(self, encoder: Any) -> None:
         """Records the pass."""
-        self._pass.encode(encoder, [self.image.view], [self._group])
+        self._pass.encode(encoder, [self.image.view])
 
     def read(self) -> DisplayImage:
         """The picture, waiting for the device."""

@@ -11,6 +11,7 @@ from andon import gbuffer
 from andon.composite import stage as composite
 from andon.display.stage import DisplayStage
 from andon.engines.prepared import Prepared
+from andon.gpu.bindings import bind_group
 from andon.gpu.device import open_gpu
 from andon.gpu.passes import FullscreenPass
 from andon.gpu.textures import Texture, make_texture
@@ -49,21 +50,19 @@ class _View:
         self.display = DisplayStage(
             gpu, self.luminance, frame.response, prepared.exposure, frame.luminance_per_unit
         )
-        self.relit = FullscreenPass(
-            gpu, FRAME, self._entry_point(prepared), ["rgba16float"], structs=STRUCTS
-        )
-        self.lux = FullscreenPass(gpu, FRAME, "illuminance_map", ["rgba16float"], structs=STRUCTS)
-        self.lux_map = make_texture(gpu, "rgba16float", view.width, view.height, label="lux")
-        own = {0: seen.texture.view, 1: seen.view_buffer}
-        everything = own | self.composite.resources
-        used = {"relit": (2, 3), "relit_with_objects": (2, 3, 5)}
-        keys = (0, 1, *used.get(self._entry_point(prepared), (2, 3, 4, 5)))
-        light = engine.direct.resources
-        self.relit_groups = [
-            self.relit.bind(0, {key: everything[key] for key in keys}),
-            self.relit.bind(1, light),
+        own = {0: ("uint", seen.texture.view), 1: ("uniform", seen.view_buffer)}
+        groups = [
+            bind_group(gpu, own | self.composite.resources, "frame"),
+            engine.direct.group,
         ]
-        self.lux_groups = [self.lux.bind(0, own), self.lux.bind(1, light)]
+        options: dict[str, Any] = {
+            "structs": STRUCTS,
+            "variants": gbuffer.projection_variant(view) | engine.direct.variants,
+        }
+        entry, target = self._entry_point(prepared), ["rgba16float"]
+        self.relit = FullscreenPass(gpu, FRAME, entry, target, groups, **options)
+        self.lux = FullscreenPass(gpu, FRAME, "illuminance_map", target, groups, **options)
+        self.lux_map = make_texture(gpu, "rgba16float", view.width, view.height, label="lux")
 
     def _entry_point(self, prepared: Prepared) -> str:
         if self.composite.has_maps:
@@ -116,7 +115,7 @@ class GpuEngine:
         self, frame: CameraFrame, seen: GpuSurface, light: _View, lamps: Sequence[Lamp]
     ) -> Texture:
         """Records direct light and composite in one pass, then the visible lamps."""
-        light.relit.encode(self.encoder, [light.luminance.view], light.relit_groups)
+        light.relit.encode(self.encoder, [light.luminance.view])
         light.composite.encode_lamps(
             self.encoder, light.luminance.view, lamps, frame.luminance_per_unit
         )
@@ -139,7 +138,7 @@ class GpuEngine:
         self, seen: GpuSurface, light: _View, luminance: Texture, image: DisplayStage
     ) -> tuple[Surface, Illuminance, Luminance, DisplayImage]:
         """The quantities as arrays; draws the illuminance map, which no frame needs."""
-        light.lux.encode(self.encoder, [light.lux_map.view], light.lux_groups)
+        light.lux.encode(self.encoder, [light.lux_map.view])
         self.finish()
         lux = light.lux_map.read()[..., :3].astype(np.float32) * np.float32(LUX_UNIT)
         linear = luminance.read()[..., :3].astype(np.float32)

@@ -15,6 +15,7 @@ from andon.gbuffer.records import (
     VIEW_RECORD,
     pack_surface,
     pack_view,
+    projection_variant,
     unpack_surface,
 )
 
@@ -26,5 +27,6 @@ __all__ = [
     "VIEW_RECORD",
     "pack_surface",
     "pack_view",
+    "projection_variant",
     "unpack_surface",
 ]

@@ -17,10 +17,10 @@ struct SurfacePoint {
   flags: u32,
 };
 
-fn surface_point(packed: vec4u, view: ViewRecord, pixel: vec2f) -> SurfacePoint {
+fn surface_point(packed: vec4u, pixel: vec2f) -> SurfacePoint {
   let root = unpack4x8unorm(packed.z).xyz;
   return SurfacePoint(
-    world_position(view, pixel, bitcast<f32>(packed.x)),
+    world_position(pixel, bitcast<f32>(packed.x)),
     octahedral_decode(packed.y),
     root * root,
     packed.w,

@@ -19,6 +19,7 @@ __all__ = [
     "VIEW_RECORD",
     "pack_surface",
     "pack_view",
+    "projection_variant",
     "unpack_surface",
 ]
 
@@ -26,19 +27,22 @@ __all__ = [
 # reversed and infinite (near/z in float32), so a small value costs no precision.
 NEAR_M = 0.01
 
-PROJECTIONS = {"pinhole": 0, "fisheye": 1, "latlong": 2}
+# The projection that view.wgsl is compiled with.
+_PROJECTION = "andon/gbuffer/projections/{}.wgsl"
 
 VIEW_RECORD = HostStruct(
     "ViewRecord",
     (
-        ("world_from_camera", "mat4x4f"),
-        ("camera_from_world", "mat4x4f"),
+        # columns of world_from_camera: directions need no 4×4 product
+        ("world_right", "vec3f"),
+        ("world_down", "vec3f"),
+        ("world_forward", "vec3f"),
         ("position", "vec3f"),
-        ("projection", "u32"),
         ("focal", "vec2f"),  # pixels
         ("centre", "vec2f"),  # pixels, GPU convention: pixel centres at +0.5
         ("size", "vec2f"),  # pixels
         ("near_m", "f32"),
+        ("camera_from_world", "mat4x4f"),
     ),
 )
 
@@ -50,16 +54,23 @@ VALID, OBJECT, MATERIAL_SHIFT = 1, 2, 8
 
 def pack_view(view: View, /) -> NDArray[Any]:
     """One `VIEW_RECORD`. The GPU's half-pixel shift is made here and nowhere else."""
+    rotation = view.world_from_camera[:3, :3]
     return VIEW_RECORD.pack(
-        world_from_camera=view.world_from_camera,
-        camera_from_world=view.camera_from_world,
+        world_right=rotation[:, 0],
+        world_down=rotation[:, 1],
+        world_forward=rotation[:, 2],
         position=view.position,
-        projection=PROJECTIONS[view.projection],
         focal=(view.fx, view.fy),
         centre=(view.cx + 0.5, view.cy + 0.5),
         size=(view.width, view.height),
         near_m=NEAR_M,
+        camera_from_world=view.camera_from_world,
     )
+
+
+def projection_variant(view: View, /) -> dict[str, str]:
+    """`variants` of a shader that imports view.wgsl, for this view's projection."""
+    return {_PROJECTION.format("pinhole"): _PROJECTION.format(view.projection)}
 
 
 def pack_surface(surface: Surface, /) -> NDArray[np.uint32]:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from andon.gpu.bindings import BindGroup
 from andon.gpu.device import Gpu
 from andon.gpu.layout import HostStruct
 from andon.gpu.wgsl import resolve
 
-__all__ = ["FullscreenPass", "bind", "color_attachment", "shader_module"]
+__all__ = ["FullscreenPass", "color_attachment", "pipeline_layout", "shader_module"]
 
 # One triangle that covers the screen: cheaper than two, and no diagonal seam.
 FULLSCREEN_VERTEX = """
@@ -19,24 +20,20 @@ FULLSCREEN_VERTEX = """
 """
 
 
-def shader_module(gpu: Gpu, path: str, structs: Mapping[str, HostStruct] | None = None) -> Any:
+def shader_module(
+    gpu: Gpu,
+    path: str,
+    structs: Mapping[str, HostStruct] | None = None,
+    variants: Mapping[str, str] | None = None,
+) -> Any:
     """The compiled module at `path`, imports resolved, with the full-screen vertex stage."""
-    code = resolve(path, structs) + FULLSCREEN_VERTEX
+    code = resolve(path, structs, variants) + FULLSCREEN_VERTEX
     return gpu.device.create_shader_module(label=path, code=code)
 
 
-def bind(gpu: Gpu, pipeline: Any, group: int, resources: Mapping[int, Any]) -> Any:
-    """A bind group for `pipeline`: binding number → texture view, sampler or buffer."""
-    import wgpu
-
-    entries: list[dict[str, Any]] = []
-    for binding, resource in resources.items():
-        if isinstance(resource, wgpu.GPUBuffer):
-            resource = {"buffer": resource, "offset": 0, "size": resource.size}
-        entries.append({"binding": binding, "resource": resource})
-    return gpu.device.create_bind_group(
-        layout=pipeline.get_bind_group_layout(group), entries=entries
-    )
+def pipeline_layout(gpu: Gpu, groups: Sequence[BindGroup]) -> Any:
+    """The layout of a pipeline that is given `groups` 0, 1, …"""
+    return gpu.device.create_pipeline_layout(bind_group_layouts=[group.layout for group in groups])
 
 
 def color_attachment(view: Any, *, load: bool = False) -> dict[str, Any]:
@@ -50,7 +47,7 @@ def color_attachment(view: Any, *, load: bool = False) -> dict[str, Any]:
 
 
 class FullscreenPass:
-    """One fragment entry point over a whole picture."""
+    """One fragment entry point over a whole picture; `groups` are bind groups 0, 1, …"""
 
     def __init__(
         self,
@@ -58,33 +55,33 @@ class FullscreenPass:
         path: str,
         entry_point: str,
         target_formats: Sequence[str],
+        groups: Sequence[BindGroup],
         *,
         structs: Mapping[str, HostStruct] | None = None,
+        variants: Mapping[str, str] | None = None,
         blend: Mapping[str, Any] | None = None,
     ) -> None:
-        self.gpu = gpu
+        self.gpu, self.groups = gpu, tuple(groups)
         self.label = f"{path}:{entry_point}"
-        module = shader_module(gpu, path, structs)
+        module = shader_module(gpu, path, structs, variants)
         targets = [{"format": f, **({"blend": blend} if blend else {})} for f in target_formats]
         self.pipeline = gpu.device.create_render_pipeline(
             label=self.label,
-            layout="auto",
+            layout=pipeline_layout(gpu, groups),
             vertex={"module": module, "entry_point": "fullscreen"},
             primitive={"topology": "triangle-list"},
             fragment={"module": module, "entry_point": entry_point, "targets": targets},
         )
 
-    def bind(self, group: int, resources: Mapping[int, Any]) -> Any:
-        """A bind group for this pass."""
-        return bind(self.gpu, self.pipeline, group, resources)
-
-    def encode(self, encoder: Any, targets: Sequence[Any], groups: Sequence[Any]) -> None:
-        """Records the pass: `targets` are texture views, `groups` bind groups 0, 1, …"""
+    def encode(
+        self, encoder: Any, targets: Sequence[Any], groups: Sequence[BindGroup] | None = None
+    ) -> None:
+        """Records the pass: `targets` are texture views, `groups` stand in for the pass's own."""
         render = encoder.begin_render_pass(
             label=self.label, color_attachments=[color_attachment(view) for view in targets]
         )
         render.set_pipeline(self.pipeline)
-        for index, group in enumerate(groups):
-            render.set_bind_group(index, group)
+        for index, bound in enumerate(groups or self.groups):
+            render.set_bind_group(index, bound.group)
         render.draw(3)
         render.end()

@@ -1,5 +1,9 @@
 """WGSL modules: files beside the Python that uses them, joined by imports.
 
+An import can be exchanged for another module of the same functions, or for generated text
+(`variants`): one projection, one shadow filter, just the lamps there are, instead of branches and
+loops, which a software rasteriser pays for whether they are taken or not.
+
 A line ``//!import andon/gpu/octahedral.wgsl`` is replaced by that file, once, before the text that
 needs it; ``//!struct Lamp`` by the declaration of a host struct (`andon.gpu.layout`), so that a
 layout is written in one place. Paths are relative to the package's parent and stay inside it.
@@ -28,11 +32,18 @@ def _read(path: str) -> str:
     return resources.files("andon").joinpath(*parts[1:]).read_text(encoding="utf-8")
 
 
-def resolve(path: str, structs: Mapping[str, HostStruct] | None = None) -> str:
-    """The module at `path` ("andon/…/name.wgsl") with all that it imports, each once, in order."""
+def resolve(
+    path: str,
+    structs: Mapping[str, HostStruct] | None = None,
+    variants: Mapping[str, str] | None = None,
+) -> str:
+    """The module at `path` ("andon/…/name.wgsl") with all that it imports, each once, in order.
+
+    `variants` maps imported paths to the path, or the text, that stands in for them.
+    """
     seen: list[str] = []
     texts: list[str] = []
-    _visit(path, seen, texts, ())
+    _visit(path, seen, texts, (), variants or {})
     text = "\n".join(texts)
     known = dict(structs or {})
 
@@ -42,15 +53,24 @@ def resolve(path: str, structs: Mapping[str, HostStruct] | None = None) -> str:
     return _STRUCT.sub(declare, text)
 
 
-def _visit(path: str, seen: list[str], texts: list[str], above: tuple[str, ...]) -> None:
+def _visit(
+    path: str,
+    seen: list[str],
+    texts: list[str],
+    above: tuple[str, ...],
+    variants: Mapping[str, str],
+) -> None:
+    replacement = variants.get(path, path)
+    text = "" if replacement.endswith(MODULE_SUFFIX) else replacement
+    path = path if text else replacement
     if path in above:
         raise ValueError(f"WGSL import cycle: {' → '.join((*above, path))}")
     if path in seen:
         return
     seen.append(path)
-    text = _read(path)
+    text = text or _read(path)
     for match in _IMPORT.finditer(text):
-        _visit(match[1], seen, texts, (*above, path))
+        _visit(match[1], seen, texts, (*above, path), variants)
     texts.append(f"// ── {path}\n" + _IMPORT.sub("", text).strip() + "\n")
 
 

@@ -31,7 +31,7 @@ struct Corner {
 
 @fragment fn surface(in: Corner) -> @location(0) vec4u {
   let depth = 1.0 / in.clip.w;
-  let sight = world_direction(view, ray_planar(view, in.clip.xy));
+  let sight = world_direction(ray_planar(in.clip.xy));
   let normal = normalize(in.normal);
   let facing = select(normal, -normal, dot(normal, sight) > 0.0);
   let material = materials[in.material];

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.gpu.device import Gpu
-from andon.gpu.passes import bind, color_attachment, shader_module
+from andon.gpu.bindings import BindGroup, bind_group
+from andon.gpu.passes import color_attachment, pipeline_layout, shader_module
 from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
 from andon.quantities import Geometry, Surface
 from andon.rays import face_normals
@@ -22,6 +23,7 @@ from andon.gbuffer import (
     VIEW_RECORD,
     pack_surface,
     pack_view,
+    projection_variant,
     unpack_surface,
 )
 from andon.surface.textures import TEXTURE_SIDE_PX
@@ -98,7 +100,7 @@ class SurfaceStage:
 
     def _make_pipelines(self) -> None:
         gpu, view = self.gpu, self.view
-        module = shader_module(gpu, SHADER, STRUCTS)
+        module = shader_module(gpu, SHADER, STRUCTS, projection_variant(view))
         self._depth = make_texture(gpu, "depth32float", view.width, view.height)
         attributes = [
             {"format": "float32x3", "offset": 0, "shader_location": 0},
@@ -109,20 +111,43 @@ class SurfaceStage:
         buffers = [
             {"array_stride": VERTEX.itemsize, "step_mode": "vertex", "attributes": attributes}
         ]
-        self.pipeline = self._pipeline(module, "corner", "surface", buffers, "greater")
+        flags = self.surface.view_buffer
+        empty = make_texture(gpu, "rgba16float", 1, 1, layers=1)
+        table = gpu.device.create_buffer(size=16, usage=_storage_usage())
+        background = self._background or make_texture(gpu, "rgba32uint", 1, 1)
+        layout = self.bind(flags, table, empty, background)
+        self.pipeline = self._pipeline(layout, module, "corner", "surface", buffers, "greater")
         self._fill: Any = None
         if self._background is not None:
-            self._fill = self._pipeline(module, "fullscreen", "background", [], "always")
-            self._fill_group = bind(
-                gpu, self._fill, 0, {0: self.surface.view_buffer, 4: self._background.view}
-            )
+            self._fill = self._pipeline(layout, module, "fullscreen", "background", [], "always")
+            self._fill_group = layout
+
+    def bind(self, flags: Any, materials: Any, textures: Texture, background: Texture) -> BindGroup:
+        """Group 0 of raster.wgsl."""
+        return bind_group(
+            self.gpu,
+            {
+                0: ("uniform", self.surface.view_buffer),
+                1: ("uniform", flags),
+                2: ("storage", materials),
+                3: ("float array", textures.view),
+                4: ("uint", background.view),
+            },
+            "surface",
+        )
 
     def _pipeline(
-        self, module: Any, vertex: str, fragment: str, buffers: list[dict[str, Any]], compare: str
+        self,
+        group: BindGroup,
+        module: Any,
+        vertex: str,
+        fragment: str,
+        buffers: list[dict[str, Any]],
+        compare: str,
     ) -> Any:
         return self.gpu.device.create_render_pipeline(
             label=f"{SHADER}:{fragment}",
-            layout="auto",
+            layout=pipeline_layout(self.gpu, [group]),
             vertex={"module": module, "entry_point": vertex, "buffers": buffers},
             primitive={"topology": "triangle-list", "cull_mode": "none"},
             depth_stencil={
@@ -153,7 +178,7 @@ class SurfaceStage:
         )
         if self._fill is not None:
             render.set_pipeline(self._fill)
-            render.set_bind_group(0, self._fill_group)
+            render.set_bind_group(0, self._fill_group.group)
             render.draw(3)
         render.set_pipeline(self.pipeline)
         for draw in self._draws:
@@ -178,18 +203,20 @@ class _Draw:
         write_buffer(gpu, flag_buffer, np.array([flags, 0, 0, 0], np.uint32))
         table, textures = _material_table(gpu, geometry)
         materials = device.create_buffer_with_data(data=table, usage=usage.STORAGE)
-        self.group = bind(
-            gpu,
-            stage.pipeline,
-            0,
-            {0: stage.surface.view_buffer, 1: flag_buffer, 2: materials, 3: textures.view},
-        )
+        nothing = make_texture(gpu, "rgba32uint", 1, 1)
+        self.group = stage.bind(flag_buffer, materials, textures, nothing)
 
     def encode(self, render: Any) -> None:
-        render.set_bind_group(0, self.group)
+        render.set_bind_group(0, self.group.group)
         render.set_vertex_buffer(0, self.vertices)
         render.set_index_buffer(self.indices, "uint32")
         render.draw_indexed(self.count)
+
+
+def _storage_usage() -> int:
+    import wgpu
+
+    return wgpu.BufferUsage.STORAGE
 
 
 def vertex_arrays(geometry: Geometry, /) -> tuple[NDArray[Any], NDArray[np.uint32]]:

@@ -102,19 +102,4 @@ fn hemisphere_illuminance(lamp: i32, normal: vec3f) -> vec3f {
   return mix(lamps[lamp].right, lamps[lamp].light, sky);
 }
 
-// One loop a group: a software rasteriser pays for both sides of a branch.
-fn illuminance(position: vec3f, normal: vec3f, bias: f32) -> vec3f {
-  var total = vec3f(0.0);
-  var lamp = 0;
-  var end = i32(direct.points);
-  for (; lamp < end; lamp++) { total += point_illuminance(lamp, position, normal, bias); }
-  end += i32(direct.wide_spots);
-  for (; lamp < end; lamp++) { total += wide_spot_illuminance(lamp, position, normal, bias); }
-  end += i32(direct.spots);
-  for (; lamp < end; lamp++) { total += spot_illuminance(lamp, position, normal, bias); }
-  end += i32(direct.directionals);
-  for (; lamp < end; lamp++) { total += directional_illuminance(lamp, position, normal, bias); }
-  end += i32(direct.hemispheres);
-  for (; lamp < end; lamp++) { total += hemisphere_illuminance(lamp, normal); }
-  return total;
-}
+//!import andon/transport/direct/sum.wgsl

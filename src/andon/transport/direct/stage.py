@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.textures import uniform_buffer, write_buffer
 from andon.lamps import Lamp
@@ -24,6 +25,23 @@ from andon.transport.direct.shadows.maps import NEAR_M, ShadowMaps
 __all__ = ["STRUCTS", "DirectStage"]
 
 
+SUM = "andon/transport/direct/sum.wgsl"
+GROUPS = ("point", "wide_spot", "spot", "directional", "hemisphere")
+
+
+def sum_of_lamps(counts: Sequence[int], /) -> str:
+    """WGSL of `illuminance` for just these numbers of lamps of each group, without loops."""
+    lines = ["fn illuminance(position: vec3f, normal: vec3f, bias: f32) -> vec3f {"]
+    lines.append("  var total = vec3f(0.0);")
+    first = 0
+    for group, count in zip(GROUPS, counts, strict=True):
+        place = "normal" if group == "hemisphere" else "position, normal, bias"
+        for lamp in range(first, first + count):
+            lines.append(f"  total += {group}_illuminance({lamp}, {place});")
+        first += count
+    return "\n".join([*lines, "  return total;", "}"])
+
+
 class DirectStage:
     """Reads the lamps of a moment, writes what `illuminance` in direct.wgsl needs.
 
@@ -32,7 +50,8 @@ class DirectStage:
 
     Attributes
     ----------
-    resources : bindings of group 1 of any shader that imports direct.wgsl.
+    group : bind group 1 of any shader that imports direct.wgsl.
+    variants : of such a shader, for the lamps of this scene.
     """
 
     def __init__(
@@ -47,14 +66,20 @@ class DirectStage:
         self.gpu = gpu
         self.bias = {"bias_real_m": bias_real_m, "bias_object_m": bias_object_m}
         self.maps = ShadowMaps(gpu, casters, lamps)
+        groups = sorted_lamps(lamps)
+        self.variants = {SUM: sum_of_lamps([len(group) for group in groups])}
         self._lamps = uniform_buffer(gpu, LAMP_RECORD.dtype.itemsize * MAX_LAMPS, "lamps")
         self._settings = uniform_buffer(gpu, DIRECT_RECORD.dtype.itemsize, "direct")
-        self.resources: dict[int, Any] = {
-            0: self._lamps,
-            1: self._settings,
-            2: self.maps.paraboloids.view,
-            3: self.maps.planes.view,
-        }
+        self.group = bind_group(
+            gpu,
+            {
+                0: ("uniform", self._lamps),
+                1: ("uniform", self._settings),
+                2: ("float array", self.maps.paraboloids.view),
+                3: ("depth array", self.maps.planes.view),
+            },
+            "direct",
+        )
 
     def encode(self, encoder: Any, lamps: Sequence[Lamp]) -> int:
         """Brings maps and records to `lamps` (same names as at the start); returns maps redrawn."""
@@ -64,8 +89,9 @@ class DirectStage:
         records = pack_lamps(groups, self.maps.layers, self.maps.frames, sizes)
         if len(records):
             write_buffer(self.gpu, self._lamps, records)
-        names = ("points", "wide_spots", "spots", "directionals", "hemispheres")
-        counts = {name: np.uint32(len(group)) for name, group in zip(names, groups, strict=True)}
+        counts = {
+            f"{name}s": np.uint32(len(group)) for name, group in zip(GROUPS, groups, strict=True)
+        }
         settings = DIRECT_RECORD.pack(**counts, **self.bias, near_m=NEAR_M)
         write_buffer(self.gpu, self._settings, settings)
         return moved

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
-from andon.gpu.passes import FullscreenPass, bind, color_attachment, shader_module
+from andon.gpu.passes import FullscreenPass, color_attachment, pipeline_layout, shader_module
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
 from andon.lamps import DirectionalLamp, Lamp, PointLamp, SpotLamp
 from andon.quantities import Geometry
@@ -176,10 +177,42 @@ class _Faces:
         size = (3 * self.face, 2 * self.face)
         self.depth = make_texture(gpu, "depth32float", *size, label="faces")
         self.slope = make_texture(gpu, "rg16float", *size, label="face slopes")
+        layers = maps.paraboloids.layers or 0
+        self.views = [maps.paraboloids.layer_view(layer) for layer in range(layers)]
+        slots = range(layers // 2)
+        self.lamps = [uniform_buffer(gpu, FACE_RECORD.dtype.itemsize, "lamp") for _ in slots]
+        # Worst case: every face sees every triangle.
+        size_bytes = max(12, 6 * maps.triangles.nbytes)
+        usage = wgpu.BufferUsage.INDEX | wgpu.BufferUsage.COPY_DST
+        self.indices = [gpu.device.create_buffer(size=size_bytes, usage=usage) for _ in slots]
+        self.groups = [
+            bind_group(
+                gpu,
+                {
+                    0: ("uniform", lamp),
+                    1: ("depth", self.depth.view),
+                    2: ("float", self.slope.view),
+                },
+                "resample",
+            )
+            for lamp in self.lamps
+        ]
+        self.face_groups = [bind_group(gpu, {0: ("uniform", lamp)}) for lamp in self.lamps]
+        self.pipeline = self._pipeline(gpu)
+        self.resample = FullscreenPass(
+            gpu,
+            f"{FOLDER}/resample.wgsl",
+            "both_discs",
+            ["r32float", "r32float"],
+            [self.groups[0]],
+            structs=STRUCTS,
+        )
+
+    def _pipeline(self, gpu: Gpu) -> Any:
         module = shader_module(gpu, f"{FOLDER}/faces.wgsl", STRUCTS)
-        self.pipeline = gpu.device.create_render_pipeline(
+        return gpu.device.create_render_pipeline(
             label="shadow faces",
-            layout="auto",
+            layout=pipeline_layout(gpu, [self.face_groups[0]]),
             vertex=_vertex_state(module, "face_corner"),
             primitive={"topology": "triangle-list", "cull_mode": "none"},
             depth_stencil=_depth_state(),
@@ -189,29 +222,6 @@ class _Faces:
                 "targets": [{"format": "rg16float"}],
             },
         )
-        self.resample = FullscreenPass(
-            gpu,
-            f"{FOLDER}/resample.wgsl",
-            "both_discs",
-            ["r32float", "r32float"],
-            structs=STRUCTS,
-        )
-        layers = maps.paraboloids.layers or 0
-        self.views = [maps.paraboloids.layer_view(layer) for layer in range(layers)]
-        usage = wgpu.BufferUsage
-        self.lamps, self.indices = [], []
-        for _ in range(layers // 2):
-            self.lamps.append(uniform_buffer(gpu, FACE_RECORD.dtype.itemsize, "shadow lamp"))
-            # Worst case: every face sees every triangle.
-            size_bytes = max(12, 6 * maps.triangles.nbytes)
-            self.indices.append(
-                gpu.device.create_buffer(size=size_bytes, usage=usage.INDEX | usage.COPY_DST)
-            )
-        self.groups = [bind(gpu, self.pipeline, 0, {0: lamp}) for lamp in self.lamps]
-        self.resample_groups = [
-            self.resample.bind(0, {0: lamp, 1: self.depth.view, 2: self.slope.view})
-            for lamp in self.lamps
-        ]
 
     def encode(self, encoder: Any, position: NDArray[np.float64], layer: int) -> None:
         maps, slot = self.maps, layer // 2
@@ -227,7 +237,7 @@ class _Faces:
             depth_stencil_attachment=_depth_attachment(self.depth.view),
         )
         render.set_pipeline(self.pipeline)
-        render.set_bind_group(0, self.groups[slot])
+        render.set_bind_group(0, self.face_groups[slot].group)
         render.set_vertex_buffer(0, maps.vertices)
         render.set_index_buffer(self.indices[slot], "uint32")
         start = 0
@@ -240,7 +250,7 @@ class _Faces:
             start += triangles.size
         render.end()
         targets = self.views[layer : layer + 2]
-        self.resample.encode(encoder, targets, [self.resample_groups[slot]])
+        self.resample.encode(encoder, targets, [self.groups[slot]])
 
 
 class _Planar:
@@ -249,16 +259,16 @@ class _Planar:
     def __init__(self, maps: ShadowMaps, count: int) -> None:
         gpu = maps.gpu
         self.maps = maps
+        self.buffers = [uniform_buffer(gpu, 64, "clip_from_world") for _ in range(count)]
+        self.groups = [bind_group(gpu, {0: ("uniform", buffer)}) for buffer in self.buffers]
         module = shader_module(gpu, f"{FOLDER}/planar.wgsl", STRUCTS)
         self.pipeline = gpu.device.create_render_pipeline(
             label="shadow plane",
-            layout="auto",
+            layout=pipeline_layout(gpu, [self.groups[0]]),
             vertex=_vertex_state(module, "planar_corner"),
             primitive={"topology": "triangle-list", "cull_mode": "none"},
             depth_stencil=_depth_state(),
         )
-        self.buffers = [uniform_buffer(gpu, 64, "clip_from_world") for _ in range(count)]
-        self.groups = [bind(gpu, self.pipeline, 0, {0: buffer}) for buffer in self.buffers]
         self.views = [maps.planes.layer_view(layer) for layer in range(count)]
 
     def encode(self, encoder: Any, frame: PlanarFrame, layer: int) -> None:
@@ -270,7 +280,7 @@ class _Planar:
             depth_stencil_attachment=_depth_attachment(self.views[layer]),
         )
         render.set_pipeline(self.pipeline)
-        render.set_bind_group(0, self.groups[layer])
+        render.set_bind_group(0, self.groups[layer].group)
         render.set_vertex_buffer(0, self.maps.vertices)
         render.set_index_buffer(self.maps.indices, "uint32")
         if self.maps.triangles.size:

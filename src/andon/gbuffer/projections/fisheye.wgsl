@@ -1,0 +1,7 @@
+// Camera-frame unit ray through `pixel`: equidistant, image radius = focal·θ.
+
+fn ray_planar(pixel: vec2f) -> vec3f {
+  let p = (pixel - view.centre) / view.focal;
+  let theta = length(p);
+  return vec3f(p * select(1.0, sin(theta) / theta, theta > 1e-6), cos(theta));
+}

@@ -1,0 +1,9 @@
+// Camera-frame unit ray through `pixel`: the whole sphere, forward in the middle.
+
+const PI: f32 = 3.14159265358979;
+
+fn ray_planar(pixel: vec2f) -> vec3f {
+  let azimuth = (pixel.x / view.size.x * 2.0 - 1.0) * PI;
+  let elevation = (0.5 - pixel.y / view.size.y) * PI;
+  return vec3f(cos(elevation) * sin(azimuth), -sin(elevation), cos(elevation) * cos(azimuth));
+}

@@ -1,1 +1,92 @@
-"""Andon: light for mixed reality."""
+"""Andon: light for mixed reality.
+
+>>> import andon
+>>> scene = andon.load_scene("room.toml")            # doctest: +SKIP
+>>> frame = andon.render(scene)                      # doctest: +SKIP
+>>> frame.image.rgb, frame.illuminance.lux           # (H, W, 3) uint8, lux   # doctest: +SKIP
+
+Everything here is imported when it is first used; `import andon` itself loads nothing.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from andon.errors import AndonError, InputError, MachineError
+    from andon.pipeline import Frame, Renderer, Report, render
+    from andon.quantities import (
+        CameraFrame,
+        DisplayImage,
+        Geometry,
+        Illuminance,
+        Luminance,
+        Material,
+        Surface,
+        photometric,
+    )
+    from andon.responses import Response
+    from andon.scene import Scene, load_scene, scene_from_dict
+    from andon.spaces import View, look_at
+
+__version__ = "0.1.0"
+
+# name: module that defines it
+_PUBLIC = {
+    "AndonError": "errors",
+    "CameraFrame": "quantities",
+    "DisplayImage": "quantities",
+    "Frame": "pipeline",
+    "Geometry": "quantities",
+    "Illuminance": "quantities",
+    "InputError": "errors",
+    "Luminance": "quantities",
+    "MachineError": "errors",
+    "Material": "quantities",
+    "Renderer": "pipeline",
+    "Report": "pipeline",
+    "Response": "responses",
+    "Scene": "scene",
+    "Surface": "quantities",
+    "View": "spaces",
+    "load_scene": "scene",
+    "look_at": "spaces",
+    "photometric": "quantities",
+    "render": "pipeline",
+    "scene_from_dict": "scene",
+}
+
+__all__ = [
+    "AndonError",
+    "CameraFrame",
+    "DisplayImage",
+    "Frame",
+    "Geometry",
+    "Illuminance",
+    "InputError",
+    "Luminance",
+    "MachineError",
+    "Material",
+    "Renderer",
+    "Report",
+    "Response",
+    "Scene",
+    "Surface",
+    "View",
+    "load_scene",
+    "look_at",
+    "photometric",
+    "render",
+    "scene_from_dict",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _PUBLIC:
+        raise AttributeError(f"module 'andon' has no attribute {name!r}")
+    return getattr(import_module(f"andon.{_PUBLIC[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

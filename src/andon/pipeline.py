@@ -13,11 +13,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from andon.errors import InputError, MachineError, nearest_name
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.scene import Scene
+
+if TYPE_CHECKING:
+    from andon.engines.prepared import Prepared
 
 __all__ = ["ENGINES", "Frame", "Renderer", "Report", "render"]
 
@@ -92,6 +95,15 @@ class Renderer:
         prepared = perf_counter()
         self._engine = _make_engine(engine, self.prepared)
         self.setup_seconds = {"read": prepared - start, "set up": perf_counter() - prepared}
+
+    def with_prepared(self, prepared: Prepared) -> Renderer:
+        """A renderer of the same engine for other settings of a scene whose files are read."""
+        other = object.__new__(Renderer)
+        start = perf_counter()
+        other.prepared = prepared
+        other._engine = _make_engine(self._engine.name, prepared)
+        other.setup_seconds = {"read": 0.0, "set up": perf_counter() - start}
+        return other
 
     @property
     def engine_name(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, cast
 
@@ -90,6 +91,7 @@ class Scene(Table):
     )
 
     _folder: Path = PrivateAttr(default=Path())
+    _trusted: frozenset[str] = PrivateAttr(default=frozenset())
     _file: str = PrivateAttr(default="scene.toml")
 
     @property
@@ -113,12 +115,25 @@ class Scene(Table):
         copy._folder, copy._file = folder, file
         return copy
 
+    def trusting(self, paths: Iterable[Path]) -> Scene:
+        """The same scene, allowed to name these files wherever they are.
+
+        For files that the *user* named, on a command line or in a program: confinement is there
+        for what a stranger's scene file names.
+        """
+        copy = self.model_copy()
+        copy._trusted = self._trusted | {str(path) for path in paths}
+        return copy
+
     def path(self, reference: str, field: str) -> Path:
         """The file that `reference` names, confined to `folder`; `field` is for the message.
 
         Raises `InputError` if the reference leaves the folder.
         """
         from andon.files.paths import confined
+
+        if reference in self._trusted:
+            return Path(reference)
 
         try:
             return confined(reference, self._folder)

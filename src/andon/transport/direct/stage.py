@@ -25,6 +25,7 @@ from andon.transport.direct.shadows.maps import NEAR_M, ShadowMaps
 __all__ = ["STRUCTS", "DirectStage"]
 
 
+FILTER = "andon/transport/direct/shadows/filter_{}.wgsl"
 SUM = "andon/transport/direct/sum.wgsl"
 GROUPS = ("point", "wide_spot", "spot", "directional", "hemisphere")
 
@@ -67,7 +68,10 @@ class DirectStage:
         self.bias = {"bias_real_m": bias_real_m, "bias_object_m": bias_object_m}
         self.maps = ShadowMaps(gpu, casters, lamps)
         groups = sorted_lamps(lamps)
-        self.variants = {SUM: sum_of_lamps([len(group) for group in groups])}
+        self.variants = {
+            SUM: sum_of_lamps([len(group) for group in groups]),
+            FILTER.format("none"): FILTER.format(self.maps.filter),
+        }
         self._lamps = uniform_buffer(gpu, LAMP_RECORD.dtype.itemsize * MAX_LAMPS, "lamps")
         self._settings = uniform_buffer(gpu, DIRECT_RECORD.dtype.itemsize, "direct")
         self.group = bind_group(

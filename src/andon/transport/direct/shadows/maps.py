@@ -41,7 +41,7 @@ def is_paraboloid(lamp: Lamp, /) -> bool:
 class ShadowMaps:
     """Depth maps around lamps: paraboloid pairs and planes, in two texture arrays.
 
-    All maps of a frame have one size: the largest that a lamp asks for.
+    All maps of a frame have one size and one filter: the finest that a lamp asks for.
 
     Attributes
     ----------
@@ -56,6 +56,8 @@ class ShadowMaps:
         shadowed = [lamp for lamp in lamps if getattr(lamp, "shadow", None) is not None]
         self.size: int = max((lamp.shadow.map_size for lamp in shadowed), default=2)  # type: ignore[union-attr]
         self.size += self.size % 2
+        filters = {lamp.shadow.filter for lamp in shadowed}
+        self.filter = "none" if filters <= {"none"} else "linear"
         round_lamps = [lamp.name for lamp in shadowed if is_paraboloid(lamp)]
         flat_lamps = [lamp.name for lamp in shadowed if not is_paraboloid(lamp)]
         self.layers = {name: 2 * i for i, name in enumerate(round_lamps)}

@@ -1,0 +1,55 @@
+"""What the commands print."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from andon.errors import InputError
+from andon.pipeline import Report
+
+__all__ = ["check_writable", "note", "print_report"]
+
+
+def note(message: str) -> None:
+    """A line on stderr that is worth reading but no failure."""
+    print(f"andon: {message}", file=sys.stderr)
+
+
+def check_writable(path: Path, suffixes: tuple[str, ...], field: str) -> None:
+    """Refuses an output before any work is done for it. Raises `InputError`."""
+    if path.suffix.lower() not in suffixes:
+        raise InputError(
+            f"must end in {', '.join(suffixes)}, got {path.name!r}", file=path, field=field
+        )
+    folder = path.parent
+    if not folder.is_dir():
+        raise InputError(
+            f"the folder {str(folder)!r} does not exist", file=path, field=field, remedy="make it"
+        )
+
+
+def print_report(report: Report, setup_seconds: Mapping[str, float], pixels: int) -> None:
+    """Engine, stage times, holes and shadow geometry of a frame."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_row("engine", f"{report.engine} · {report.adapter}")
+    seconds: dict[str, Any] = {**setup_seconds, **report.stage_seconds}
+    table.add_row("stages", " · ".join(f"{k} {v * 1e3:.0f} ms" for k, v in seconds.items()))
+    table.add_row("photometry", report.photometry)
+    table.add_row("holes", f"{report.hole_pixels / pixels:.1%} of the pixels stay as they were")
+    table.add_row("clipped", f"{report.clipped_pixels / pixels:.1%} of the photograph is clipped")
+    if report.occluder_triangles:
+        table.add_row(
+            "shadows",
+            f"{report.occluder_triangles} of {report.occluder_triangles_before} triangles, "
+            f"95 % within {report.occluder_error_m * 1e3:.1f} mm; "
+            f"lift {report.shadow_bias_m * 1e3:.1f} mm",
+        )
+    if report.ignored_tables:
+        table.add_row("not drawn", f"{', '.join(report.ignored_tables)} (later versions)")
+    Console(stderr=True).print(table)

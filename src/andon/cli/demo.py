@@ -1,0 +1,72 @@
+"""``andon demo``: a real photograph with real geometry, relit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib import resources
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from andon.cli.console import print_report
+from andon.errors import InputError, MachineError, nearest_name
+
+__all__ = ["run"]
+
+DEMONSTRATIONS = ("photo",)
+# What the second relit picture keeps of the photograph's own light.
+DIMMING = 0.15
+
+
+def run(name: str, out: Path, engine: str) -> None:
+    """Writes contact-sheet.png, relit.png, relit-dimmed.png and illuminance.exr into `out`."""
+    if name not in DEMONSTRATIONS:
+        near = nearest_name(name, list(DEMONSTRATIONS))
+        raise InputError(
+            f"there is no demonstration {name!r}, there is {', '.join(DEMONSTRATIONS)}",
+            field="demo",
+            remedy=f"did you mean {near!r}?" if near else None,
+        )
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise MachineError(f"{out}: cannot be made: {error.strerror}") from error
+    with resources.as_file(resources.files("andon") / "data" / "motorcycle") as folder:
+        _photo(folder, out, engine)
+
+
+def _photo(folder: Path, out: Path, engine: str) -> None:
+    from andon.composite.model import Ambient
+    from andon.display.false_colour import (
+        contact_sheet,
+        depth_picture,
+        false_colour,
+        normal_picture,
+    )
+    from andon.files.pictures import read_picture, write_exr, write_picture
+    from andon.pipeline import Renderer
+    from andon.quantities import photometric
+    from andon.scene import load_scene
+
+    start = perf_counter()
+    renderer = Renderer(load_scene(folder / "scene.toml"), engine)  # type: ignore[arg-type]
+    frame = renderer.render()
+    ambient: Ambient = replace(renderer.prepared.ambient, dimming=(DIMMING,) * 3)
+    dimmed = renderer.with_prepared(replace(renderer.prepared, ambient=ambient)).render()
+    surface, lux = frame.surface, np.asarray(frame.illuminance.lux, np.float32)
+    tiles = [
+        ("photograph", read_picture(folder / "photo.png").values),
+        ("depth", depth_picture(surface.depth, surface.valid)),
+        ("normals", normal_picture(surface.normal, surface.valid)),
+        ("added illuminance", false_colour(photometric(lux), "lx, relative", valid=surface.valid)),
+        ("relit", frame.image.rgb),
+        (f"relit, {DIMMING:.0%} of the photograph's light left", dimmed.image.rgb),
+    ]
+    write_picture(out / "relit.png", frame.image.rgb)
+    write_picture(out / "relit-dimmed.png", dimmed.image.rgb)
+    word = frame.illuminance.photometry
+    write_exr(out / "illuminance.exr", lux, unit="lx", photometry=word)
+    write_picture(out / "contact-sheet.png", contact_sheet(tiles))
+    print_report(frame.report, renderer.setup_seconds, surface.valid.size)
+    print(f"{perf_counter() - start:.1f} s in all; look at {out / 'contact-sheet.png'}")

@@ -1,0 +1,113 @@
+"""Measured quantities as pictures for people: false colours with a scale bar, and contact sheets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["contact_sheet", "depth_picture", "false_colour", "normal_picture"]
+
+Rgb = NDArray[np.uint8]
+
+BAR_WIDTH_PX = 74
+CAPTION_PX = 22
+INK, PAPER = (32, 32, 32), (245, 243, 238)
+HOLE = (60, 60, 60)
+# Decades below the maximum that the scale shows: two are what a lit room spans.
+DECADES = 2.0
+
+
+def false_colour(
+    values: NDArray[Any], unit: str, /, *, valid: NDArray[np.bool_] | None = None
+) -> Rgb:
+    """(H, W + bar, 3) uint8: a logarithmic colour scale over two decades, with a labelled bar.
+
+    Parameters
+    ----------
+    values : (H, W) ≥ 0, e.g. photometric illuminance in lx.
+    unit : written at the bar.
+    valid : (H, W); holes are dark grey.
+    """
+    import cv2
+
+    shown = values if valid is None else values[valid]
+    # The 99.5th percentile: one pixel under a bulb would else push the room into one colour.
+    top = float(np.percentile(shown, 99.5)) if shown.size else 1.0
+    top = _round_up(max(top, 1e-6))
+    share = np.log10(np.maximum(values, 1e-12) / top) / DECADES + 1
+    codes = np.clip(np.nan_to_num(share) * 255, 0, 255).astype(np.uint8)
+    picture = np.asarray(cv2.applyColorMap(codes, cv2.COLORMAP_INFERNO))[..., ::-1].copy()
+    if valid is not None:
+        picture[~valid] = HOLE
+    return np.concatenate([picture, _bar(len(picture), top, unit)], axis=1)
+
+
+def _round_up(value: float) -> float:
+    """The next of 1, 2, 5 × 10ⁿ."""
+    power = 10 ** np.floor(np.log10(value))
+    return float(next(step * power for step in (1, 2, 5, 10) if step * power >= value))
+
+
+def _bar(height: int, top: float, unit: str) -> Rgb:
+    import cv2
+    from PIL import Image, ImageDraw, ImageFont
+
+    margin = 16
+    rows = np.linspace(255, 0, height - 2 * margin)[:, None].repeat(16, axis=1).astype(np.uint8)
+    image = Image.new("RGB", (BAR_WIDTH_PX, height), PAPER)
+    colours = np.asarray(cv2.applyColorMap(rows, cv2.COLORMAP_INFERNO))[..., ::-1]
+    image.paste(Image.fromarray(np.ascontiguousarray(colours)), (8, margin))
+    draw, font = ImageDraw.Draw(image), ImageFont.load_default(size=12)
+    for power in np.arange(0, DECADES + 0.01, 0.5):
+        y = margin + power / DECADES * (height - 2 * margin - 1)
+        draw.line([(24, y), (28, y)], fill=INK)
+        draw.text((30, y), f"{float(f'{top / 10**power:.2g}'):g}", fill=INK, font=font, anchor="lm")
+    draw.text((8, 8), unit, fill=INK, font=font, anchor="lm")
+    return np.asarray(image)
+
+
+def depth_picture(depth_m: NDArray[Any], valid: NDArray[np.bool_], /) -> Rgb:
+    """(H, W, 3) uint8: near is bright, equal steps of 1/depth; holes are dark grey."""
+    import cv2
+
+    inverse = np.zeros(depth_m.shape)
+    inverse[valid] = 1 / depth_m[valid]
+    low, high = np.percentile(inverse[valid], [0.5, 99.5]) if valid.any() else (0.0, 1.0)
+    codes = np.clip((inverse - low) / max(high - low, 1e-12) * 255, 0, 255).astype(np.uint8)
+    picture = np.asarray(cv2.applyColorMap(codes, cv2.COLORMAP_VIRIDIS))[..., ::-1].copy()
+    picture[~valid] = HOLE
+    return picture
+
+
+def normal_picture(normal: NDArray[Any], valid: NDArray[np.bool_], /) -> Rgb:
+    """(H, W, 3) uint8: world normals as ½ + ½n; holes are dark grey."""
+    picture = np.asarray(np.nan_to_num(normal * 0.5 + 0.5) * 255 + 0.5, np.uint8)
+    picture[~valid] = HOLE
+    return picture
+
+
+def contact_sheet(tiles: Sequence[tuple[str, Rgb]], /, *, columns: int = 3) -> Rgb:
+    """Captioned pictures in rows, all brought to the width of the first."""
+    import cv2
+
+    height, width = tiles[0][1].shape[:2]
+    cells = [
+        _captioned(caption, np.asarray(cv2.resize(tile, (width, height), interpolation=cv2.INTER_AREA)))
+        for caption, tile in tiles
+    ]
+    while len(cells) % columns:
+        cells.append(np.full_like(cells[0], PAPER))
+    rows = [np.concatenate(cells[i : i + columns], axis=1) for i in range(0, len(cells), columns)]
+    return np.concatenate(rows, axis=0)
+
+
+def _captioned(caption: str, tile: Rgb) -> Rgb:
+    from PIL import Image, ImageDraw, ImageFont
+
+    image = Image.new("RGB", (tile.shape[1], CAPTION_PX), PAPER)
+    font = ImageFont.load_default(size=14)
+    ImageDraw.Draw(image).text((6, CAPTION_PX // 2), caption, fill=INK, font=font, anchor="lm")
+    return np.concatenate([np.asarray(image), tile], axis=0)

@@ -67,6 +67,31 @@ def hdr_new_rle(pixels: np.ndarray) -> bytes:
     return out
 
 
+def huge_exr(side: int) -> bytes:
+    """A header written out by hand: OpenEXR would not write one."""
+
+    def attribute(name: bytes, kind: bytes, value: bytes) -> bytes:
+        return name + b"\0" + kind + b"\0" + len(value).to_bytes(4, "little") + value
+
+    window = np.array([0, 0, side - 1, side - 1], "<i4").tobytes()
+    one = np.float32(1).tobytes()
+    channels = b"".join(
+        name + b"\0" + np.array([2, 0, 1, 1], "<i4").tobytes() for name in (b"B", b"G", b"R")
+    )
+    return (
+        b"\x76\x2f\x31\x01\x02\0\0\0"
+        + attribute(b"channels", b"chlist", channels + b"\0")
+        + attribute(b"compression", b"compression", b"\x03")
+        + attribute(b"dataWindow", b"box2i", window)
+        + attribute(b"displayWindow", b"box2i", window)
+        + attribute(b"lineOrder", b"lineOrder", b"\0")
+        + attribute(b"pixelAspectRatio", b"float", one)
+        + attribute(b"screenWindowCenter", b"v2f", b"\0" * 8)
+        + attribute(b"screenWindowWidth", b"float", one)
+        + b"\0" * 1000
+    )
+
+
 def pfm(values: np.ndarray, order: str = "<") -> bytes:
     head = f"Pf\n{values.shape[1]} {values.shape[0]}\n{-1.0 if order == '<' else 1.0}\n"
     return head.encode() + values[::-1].astype(f"{order}f4").tobytes()

@@ -54,7 +54,7 @@ def test_toml_round_trips_to_the_last_bit(
         height,
         *((0.0,) * 4 if flat else intrinsics),
         distortion=() if flat else tuple(np.linspace(-0.3, 0.1, coefficients)),
-        world_from_camera=look_at(np.array(position), np.array(position) + (1, 2, -3)),
+        world_from_camera=look_at(np.array(position), np.add(position, (1, 2, -3))),
         name=name,
     )
     path = tmp_path_factory.getbasetemp() / "camera.toml"

@@ -80,8 +80,15 @@ def test_npy_round_trips_and_refuses_objects(tmp_path: Path) -> None:
         write_npy(tmp_path / "b.npy", np.array([{}], object))
 
 
-@pytest.mark.parametrize("values", [rgb().astype(np.float32), np.zeros((0, 4, 3), np.uint8),
-                                    np.zeros((4, 4, 2), np.uint8), np.zeros(4, np.uint8)])  # fmt: skip
+@pytest.mark.parametrize(
+    "values",
+    [
+        rgb().astype(np.float32),
+        np.zeros((0, 4, 3), np.uint8),
+        np.zeros((4, 4, 2), np.uint8),
+        np.zeros(4, np.uint8),
+    ],
+)
 def test_wrong_arrays_are_named(values: np.ndarray, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"must be \(H, W\) or \(H, W, 3\)"):
         write_png(tmp_path / "a.png", values)

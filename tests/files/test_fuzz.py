@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from andon.errors import InputError
 from andon.files import READERS, Reader, reader_for
 
-from .specimens import SPECIMENS, hdr_header, npy, png_header
+from .specimens import SPECIMENS, hdr_header, huge_exr, npy, png_header
 
 SIDE = 60_000
 OFFSETS = 80
@@ -131,31 +131,6 @@ def huge_jpeg() -> bytes:
     return start + b"\x03\x01\x11\x00\x02\x11\x00\x03\x11\x00" + b"\xff\xda\x00\x08" + b"\0" * 64
 
 
-def huge_exr() -> bytes:
-    """A header written out by hand: OpenEXR would not write one."""
-
-    def attribute(name: bytes, kind: bytes, value: bytes) -> bytes:
-        return name + b"\0" + kind + b"\0" + len(value).to_bytes(4, "little") + value
-
-    window = np.array([0, 0, SIDE - 1, SIDE - 1], "<i4").tobytes()
-    one = np.float32(1).tobytes()
-    channels = b"".join(
-        name + b"\0" + np.array([2, 0, 1, 1], "<i4").tobytes() for name in (b"B", b"G", b"R")
-    )
-    return (
-        b"\x76\x2f\x31\x01\x02\0\0\0"
-        + attribute(b"channels", b"chlist", channels + b"\0")
-        + attribute(b"compression", b"compression", b"\x03")
-        + attribute(b"dataWindow", b"box2i", window)
-        + attribute(b"displayWindow", b"box2i", window)
-        + attribute(b"lineOrder", b"lineOrder", b"\0")
-        + attribute(b"pixelAspectRatio", b"float", one)
-        + attribute(b"screenWindowCenter", b"v2f", b"\0" * 8)
-        + attribute(b"screenWindowWidth", b"float", one)
-        + b"\0" * 1000
-    )
-
-
 def huge_npy() -> bytes:
     head = npy(np.zeros((2, 2)))
     return head.replace(b"(2, 2), }".ljust(20), f"({SIDE}, {SIDE}), }}".encode().ljust(20))
@@ -172,14 +147,14 @@ PNG_END = b"\0\0\0\0IEND\xaeB`\x82"
 HOSTILE = {
     "picture.png": png_header(SIDE, SIDE) + PNG_END,
     "picture.jpeg": huge_jpeg(),
-    "picture.exr": huge_exr(),
+    "picture.exr": huge_exr(SIDE),
     "picture.hdr": hdr_header(SIDE, SIDE) + b"\0" * 100,
     "depth.npy": huge_npy(),
     "depth.npz": huge_npz(),
     "depth.pfm": f"Pf\n{SIDE} {SIDE}\n-1\n".encode() + b"\0" * 100,
     "depth.png": png_header(SIDE, SIDE, 16, 0) + PNG_END,
     "depth.pgm": f"P5\n{SIDE} {SIDE}\n65535\n".encode() + b"\0" * 100,
-    "depth.exr": huge_exr(),
+    "depth.exr": huge_exr(SIDE),
 }
 
 

@@ -143,6 +143,7 @@ class RadianceScene:
         ambient_divisions: int = 1024,
         ambient_accuracy: float = 0.1,
         source_subdivision: float = 0.0,
+        lift_m: float = LIFT_M,
         threads: int | None = None,
     ) -> Float:
         """(n, 3) lux on surfaces at `points` (n, 3) metres that face `normals` (n, 3).
@@ -153,11 +154,13 @@ class RadianceScene:
         ambient_divisions, ambient_accuracy : ``-ad`` and ``-aa``, used with bounces only.
         source_subdivision : ``-ds``, cuts area lamps down to this share of their distance;
             0 takes each triangle as one sample, right for fine meshes.
+        lift_m : height above the points at which light is measured; more than their error, or
+            they lie in their own shadow.
         threads : processes of `rtrace`; None takes all cores.
         """
         if self._folder is None:
             raise InputError("must be entered before it is asked", field="RadianceScene")
-        rays = _rays(points, normals)
+        rays = _rays(points, normals, lift_m)
         if len(rays) == 0:
             return np.empty((0, 3))
         options = {
@@ -168,8 +171,8 @@ class RadianceScene:
             "ds": source_subdivision,
             "n": threads or os.cpu_count() or 1,
         }
-        # -dr 0: no mirrors, so no virtual lamps; -lw 0 -lr: only bounces are counted down.
-        fixed = "-I -h -w -fd -dt 0 -dc 1 -dj 0 -dr 0".split()
+        # Every lamp is tested, at its centre; -dr 0: there are no mirrors, so no virtual lamps.
+        fixed = ["-I", "-h", "-w", "-fd", "-dt", "0", "-dc", "1", "-dj", "0", "-dr", "0"]
         chosen = [word for key, value in options.items() for word in (f"-{key}", str(value))]
         octree = str(Path(self._folder.name) / "scene.oct")
         answer = _run("rtrace", [*fixed, *chosen, octree], rays.tobytes(), self._limit)
@@ -215,8 +218,8 @@ def time_picture(
     return Timing(tuple(seconds), len(points))
 
 
-def _rays(points: NDArray[Any], normals: NDArray[Any]) -> Float:
-    """(n, 6) float64: origins moved to where `rtrace` evaluates `LIFT_M` above, and normals."""
+def _rays(points: NDArray[Any], normals: NDArray[Any], lift_m: float) -> Float:
+    """(n, 6) float64: origins moved to where `rtrace` measures `lift_m` above, and normals."""
     origins, facing = np.asarray(points, np.float64), np.asarray(normals, np.float64)
     for field, values in (("points", origins), ("normals", facing)):
         if values.ndim != 2 or values.shape[1] != 3 or not np.isfinite(values).all():
@@ -228,7 +231,7 @@ def _rays(points: NDArray[Any], normals: NDArray[Any]) -> Float:
         # A zero direction tells rtrace to flush its output, it would give no number at all.
         raise InputError("must not be zero", field="normals")
     facing = facing / length
-    return np.concatenate([origins - (RTRACE_LIFT_M - LIFT_M) * facing, facing], axis=1)
+    return np.concatenate([origins - (RTRACE_LIFT_M - lift_m) * facing, facing], axis=1)
 
 
 def _geometry_text(geometry: Geometry) -> str:

@@ -7,6 +7,7 @@ import pytest
 
 from andon.errors import InputError, MachineError
 from andon.quantities import Geometry, Material
+from andon.spaces import View, look_at
 from andon.verify.rooms import furnished_room, lamps_in
 from andon.verify.solids import icosphere, panel
 from andon.verify.truths import radiance
@@ -19,6 +20,7 @@ from andon.verify.truths.radiance import (
     SpotSource,
     irradiance,
     time_picture,
+    time_view,
 )
 
 pytest.importorskip("pyradiance")
@@ -176,6 +178,25 @@ def test_a_furnished_room_agrees_with_embree_shadows_and_the_closed_form():
     expected = point_lux(points, normals, lamp.position, lamp.intensity_rgb_cd) * seen[:, None]
     close = np.isclose(lux, expected, rtol=2e-3, atol=1e-3).all(axis=1)
     assert close.mean() > 0.995
+
+
+def test_a_view_sees_luminance_and_no_lamps():
+    rho, lamp = np.array([0.6, 0.3, 0.1]), PointSource(np.array([0.0, 1.0, 0.0]), np.full(3, 20.0))
+    painted = replace(FLOOR, materials=(Material(reflectance=tuple(rho)),))
+    # From straight above, the lamp is in the middle of the picture, before the floor.
+    pose = look_at(np.array([0.0, 3.0, 0.0]), np.zeros(3), up=(0, 0, -1))
+    view = View("pinhole", 41, 31, fx=40, fy=40, cx=20, cy=15, world_from_camera=pose)
+    with RadianceScene(painted, [lamp]) as scene:
+        seen = scene.luminance(view, threads=1)
+        assert time_view(scene, view, threads=1).points == 41 * 31
+    assert seen.shape == (31, 41, 3)
+    column, row = np.meshgrid(np.arange(41), np.arange(31))
+    points = np.stack([(column - 20) * 3 / 40, 0 * row, (row - 15) * 3 / 40], -1).reshape(-1, 3)
+    lux = point_lux(points, np.tile(UP, (len(points), 1)), lamp.position, lamp.intensity_cd)
+    expected = (rho * lux / np.pi).reshape(seen.shape)
+    beside = (column != 20) | (row != 15)
+    np.testing.assert_allclose(seen[beside], expected[beside], rtol=1e-4)
+    assert seen[15, 20].max() <= expected.max(), "the lamp itself must not shine into the picture"
 
 
 def test_a_picture_is_timed():

@@ -178,9 +178,10 @@ class RadianceScene:
 
         Surfaces are flat and diffuse (``Material.reflectance``); lamps do not show.
         """
-        return self._seen(_view_rays(view), threads).reshape(*view.shape, 3)
+        return self.luminance_along(_view_rays(view), threads=threads).reshape(*view.shape, 3)
 
-    def _seen(self, rays: Float, threads: int | None) -> Float:
+    def luminance_along(self, rays: Float, /, *, threads: int | None = None) -> Float:
+        """(n, 3) cd/m² along rays (n, 6): an origin in metres and a unit direction each."""
         # -dv-: a ray that meets a lamp itself goes dark.
         return self._trace(["-dv-"], rays, {"ab": 0, "ds": 0, "n": threads or os.cpu_count() or 1})
 
@@ -242,7 +243,7 @@ def time_view(
 ) -> Timing:
     """How long Radiance takes for the whole picture: surfaces, direct light, luminance."""
     rays = _view_rays(view)  # not Radiance's work, so outside its time
-    return Timing(_timed(lambda: scene._seen(rays, threads), repeats), len(rays))
+    return Timing(_timed(lambda: scene.luminance_along(rays, threads=threads), repeats), len(rays))
 
 
 def _timed(ask: Callable[[], object], repeats: int) -> tuple[float, ...]:

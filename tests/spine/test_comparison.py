@@ -45,7 +45,7 @@ def test_a_small_shift_of_everything_fails_by_its_mean(tmp_path):
 def test_a_difference_is_written_and_named(tmp_path):
     other = GREY.copy()
     other[:2] = 200
-    with pytest.raises(AssertionError, match="my-picture-difference.png"):
+    with pytest.raises(AssertionError, match=r"my-picture-difference\.png"):
         assert_same_picture(other, GREY, tmp_path, what="my picture")
     assert (tmp_path / "my-picture-difference.png").stat().st_size > 0
 

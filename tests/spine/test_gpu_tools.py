@@ -46,7 +46,7 @@ def test_a_texture_beyond_the_adapter_is_the_machines_fault(gpu):
 def test_no_adapter_is_said_with_a_remedy(monkeypatch):
     monkeypatch.setattr(device, "_request_adapter", lambda: None)
     assert device.adapter_summary() is None
-    with pytest.raises(MachineError, match="mesa-vulkan-drivers.*reference"):
+    with pytest.raises(MachineError, match=r"mesa-vulkan-drivers.*reference"):
         device.open_gpu.__wrapped__()
 
 

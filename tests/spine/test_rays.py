@@ -66,7 +66,7 @@ def test_random_triangles_against_plain_intersection():
 def test_precision_far_from_the_origin_is_float64s_once_the_triangle_is_chosen():
     shift = np.array([300.0, -200.0, 500.0])
     moved = Geometry(SQUARE.positions + shift, SQUARE.triangles)
-    origin = shift + (0.3, 0.2, 1.7)
+    origin = shift + np.array([0.3, 0.2, 1.7])
     hits = RayScene(moved).first_hits(origin[None], np.array([[0, 0, -1.0]]))
     assert hits.distance[0] == pytest.approx(1.7, abs=1e-10)
 
@@ -93,8 +93,8 @@ def test_crossings_of_a_box_are_even_outside_and_odd_inside():
     geometry = Geometry(solid.positions, solid.triangles.astype(np.int32))
     directions = unit(np.random.default_rng(3).normal(size=(40, 3)))
     centre = geometry.positions.mean(axis=0)
-    inside = RayScene(geometry).crossings(centre + (0.1, 0.2, 0.3), directions)
-    outside = RayScene(geometry).crossings(centre + (5, 0.2, 0.3), directions)
+    inside = RayScene(geometry).crossings(centre + np.array([0.1, 0.2, 0.3]), directions)
+    outside = RayScene(geometry).crossings(centre + np.array([5, 0.2, 0.3]), directions)
     assert (inside == 1).all()
     assert set(outside.tolist()) <= {0, 2}
 

@@ -129,7 +129,7 @@ def test_look_at_puts_the_target_in_the_middle_and_up_above(eye, target):
     seen = transform_points(view.camera_from_world, target)
     assert seen[2] == pytest.approx(np.linalg.norm(forward))
     assert_agree(view.project(seen), [4, 3], atol=1e-9)
-    above = transform_points(view.camera_from_world, target + (0, 0.01, 0))
+    above = transform_points(view.camera_from_world, target + np.array([0, 0.01, 0]))
     assert above[1] < 0
 
 

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from andon.errors import AndonError, InputError, MachineError
-    from andon.pipeline import Frame, Renderer, Report, render
+    from andon.lamps import DirectionalLamp, HemisphereLamp, PointLamp, SkyLamp, SpotLamp
+    from andon.pipeline import Frame, Renderer, Report, relight, render
     from andon.quantities import (
         CameraFrame,
         DisplayImage,
@@ -36,23 +37,29 @@ __version__ = "0.1.0"
 _PUBLIC = {
     "AndonError": "errors",
     "CameraFrame": "quantities",
+    "DirectionalLamp": "lamps",
     "DisplayImage": "quantities",
     "Frame": "pipeline",
     "Geometry": "quantities",
+    "HemisphereLamp": "lamps",
     "Illuminance": "quantities",
     "InputError": "errors",
     "Luminance": "quantities",
     "MachineError": "errors",
     "Material": "quantities",
+    "PointLamp": "lamps",
     "Renderer": "pipeline",
     "Report": "pipeline",
     "Response": "responses",
     "Scene": "scene",
+    "SkyLamp": "lamps",
+    "SpotLamp": "lamps",
     "Surface": "quantities",
     "View": "spaces",
     "load_scene": "scene",
     "look_at": "spaces",
     "photometric": "quantities",
+    "relight": "pipeline",
     "render": "pipeline",
     "scene_from_dict": "scene",
 }
@@ -60,23 +67,29 @@ _PUBLIC = {
 __all__ = [
     "AndonError",
     "CameraFrame",
+    "DirectionalLamp",
     "DisplayImage",
     "Frame",
     "Geometry",
+    "HemisphereLamp",
     "Illuminance",
     "InputError",
     "Luminance",
     "MachineError",
     "Material",
+    "PointLamp",
     "Renderer",
     "Report",
     "Response",
     "Scene",
+    "SkyLamp",
+    "SpotLamp",
     "Surface",
     "View",
     "load_scene",
     "look_at",
     "photometric",
+    "relight",
     "render",
     "scene_from_dict",
 ]

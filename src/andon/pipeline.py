@@ -10,19 +10,31 @@ shared, the rest is done per view.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal
 
+from numpy.typing import NDArray
+
 from andon.errors import InputError, MachineError, nearest_name
-from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
+from andon.quantities import (
+    CameraFrame,
+    DisplayImage,
+    Illuminance,
+    Luminance,
+    Photometry,
+    Surface,
+)
+from andon.responses import SRGB, Response
 from andon.scene import Scene
+from andon.spaces import View
 
 if TYPE_CHECKING:
     from andon.engines.prepared import Prepared
+    from andon.lamps import Lamp
 
-__all__ = ["ENGINES", "Frame", "Renderer", "Report", "render"]
+__all__ = ["ENGINES", "Frame", "Renderer", "Report", "relight", "render"]
 
 EngineName = Literal["auto", "gpu", "reference"]
 ENGINES = ("auto", "gpu", "reference")
@@ -76,7 +88,7 @@ class Renderer:
 
     Parameters
     ----------
-    scene : from `andon.load_scene` or `andon.scene_from_dict`.
+    scene : from `andon.load_scene` or `andon.scene_from_dict`; or what `prepare` made of one.
     engine : ``auto`` takes the GPU where an adapter is found, else the reference.
 
     Raises
@@ -87,23 +99,14 @@ class Renderer:
         for ``engine="gpu"`` without an adapter.
     """
 
-    def __init__(self, scene: Scene, engine: EngineName = "auto") -> None:
-        from andon.engines.prepared import prepare
+    def __init__(self, scene: Scene | Prepared, engine: EngineName = "auto") -> None:
+        from andon.engines.prepared import Prepared, prepare
 
         start = perf_counter()
-        self.prepared = prepare(scene)
+        self.prepared = scene if isinstance(scene, Prepared) else prepare(scene)
         prepared = perf_counter()
         self._engine = _make_engine(engine, self.prepared)
         self.setup_seconds = {"read": prepared - start, "set up": perf_counter() - prepared}
-
-    def with_prepared(self, prepared: Prepared) -> Renderer:
-        """A renderer of the same engine for other settings of a scene whose files are read."""
-        other = object.__new__(Renderer)
-        start = perf_counter()
-        other.prepared = prepared
-        other._engine = _make_engine(self._engine.name, prepared)
-        other.setup_seconds = {"read": 0.0, "set up": perf_counter() - start}
-        return other
 
     @property
     def engine_name(self) -> str:
@@ -193,6 +196,50 @@ def render(
     ((500, 741, 3), dtype('uint8'))
     """
     return Renderer(scene, engine).render(time_seconds, view)
+
+
+def relight(
+    photo: NDArray[Any],
+    view: View,
+    lamps: Sequence[Lamp],
+    /,
+    *,
+    depth_m: NDArray[Any],
+    ambient_lux: float | Sequence[float] | NDArray[Any],
+    dimming: float | Sequence[float] = 1.0,
+    response: Response = SRGB,
+    photometry: Photometry = "absolute",
+    engine: EngineName = "auto",
+) -> Frame:
+    """Relights arrays: for those who have a picture and its depth in memory already.
+
+    Parameters
+    ----------
+    photo : (H, W, 3) uint8 or uint16, encoded by `response`; or float, linear.
+    view : where its pixels look, without distortion.
+    lamps : `PointLamp`, `SpotLamp`, `DirectionalLamp`, `SkyLamp`, `HemisphereLamp`.
+    depth_m : (H, W) metres along the optical axis; NaN, 0 and infinity are holes.
+    ambient_lux : E0 that the photograph was taken in: number, three channels or (H, W, 3), > 0.
+    dimming : share of E0 that is left, ≥ 0; number or three channels.
+
+    Raises
+    ------
+    InputError
+        where sizes do not fit or numbers are out of range.
+    """
+    from andon.engines.arrays import prepare_arrays
+
+    prepared = prepare_arrays(
+        photo,
+        view,
+        tuple(lamps),
+        depth_m=depth_m,
+        ambient_lux=ambient_lux,
+        dimming=dimming,
+        response=response,
+        photometry=photometry,
+    )
+    return Renderer(prepared, engine).render()
 
 
 def _make_engine(name: str, prepared: Any) -> Any:

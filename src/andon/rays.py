@@ -58,9 +58,11 @@ class RayScene:
         from embreex.rtcore_scene import EmbreeScene
 
         self.geometry = geometry
-        self._scene: Any = EmbreeScene()
+        # Robust: rays do not slip through the edge that two triangles share.
+        self._scene: Any = EmbreeScene(robust=True)
         if len(geometry.triangles):
-            TriangleMesh(
+            # The mesh has to outlive the queries: the scene only borrows its buffers.
+            self._mesh: Any = TriangleMesh(
                 self._scene,
                 np.ascontiguousarray(geometry.positions, np.float32),
                 np.ascontiguousarray(geometry.triangles, np.int32),

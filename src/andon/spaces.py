@@ -65,7 +65,9 @@ def invert_rigid(target_from_source: Float, /) -> Float:
     return inverse
 
 
-def look_at(eye: NDArray[Any], target: NDArray[Any], up: tuple[float, float, float] = (0, 1, 0)) -> Float:
+def look_at(
+    eye: NDArray[Any], target: NDArray[Any], up: tuple[float, float, float] = (0, 1, 0)
+) -> Float:
     """``world_from_camera`` of a camera at `eye` (3,) that looks at `target` (3,), in metres."""
     forward = np.asarray(target, float) - np.asarray(eye, float)
     right = np.cross(forward, up)
@@ -109,7 +111,9 @@ class View:
     def __post_init__(self) -> None:
         for key in ("width", "height"):
             if not 1 <= getattr(self, key) <= 65536:
-                raise InputError(f"must be 1…65536 px, got {getattr(self, key)}", field=f"camera.{key}")
+                raise InputError(
+                    f"must be 1…65536 px, got {getattr(self, key)}", field=f"camera.{key}"
+                )
         if self.projection == "latlong":
             if self.distortion:
                 raise InputError("latlong has no distortion", field="camera.distortion")

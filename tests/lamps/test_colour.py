@@ -118,7 +118,10 @@ def test_outside_the_gamut_is_clipped_with_the_photometric_value_kept():
     assert factors_from_temperature(1500)[2] == 0  # a candle is outside too
 
 
-@given(st.tuples(*[st.floats(0, 1e300)] * 3).filter(any), st.floats(1e-3, 1e3))
+CHANNEL = st.just(0.0) | st.floats(1e-250, 1e290)  # times the gain, still a normal number
+
+
+@given(st.tuples(CHANNEL, CHANNEL, CHANNEL).filter(any), st.floats(1e-3, 1e3))
 def test_only_the_ratio_of_rgb_counts(rgb, gain):
     factors = factors_from_rgb(np.array(rgb))
     assert np.allclose(factors, factors_from_rgb(np.array(rgb) * gain), rtol=1e-12)

@@ -33,7 +33,7 @@ def test_point():
     assert lamp.name == "point-1"
     assert lamp.position_m.tolist() == [1, 2, 3]
     assert lamp.intensity_cd.tolist() == [50, 50, 50]
-    assert lamp.shadow == Shadow(1024, "pcf")
+    assert lamp.shadow == Shadow(1024, "linear")
     assert lamp.visible_radius_m == 0
 
 

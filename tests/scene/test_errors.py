@@ -116,7 +116,9 @@ CASES = [
     ("a = 1\na = 2", "scene.toml: line 2, column 6: is not TOML: Cannot overwrite a value"),
     ("x = " + "1" * 5000, "is not TOML: a number has too many digits"),
     ("x = " + "[" * 5000, "is nested too deeply"),
-    (".".join("a" * 5000) + " = 1", "nested more than 32 deep"),
+    ("\n" + ".".join("a" * 500_000) + " = 1", "line 2: a key has at most 32 dotted parts"),
+    ("[" + " . ".join(["'a.b'"] * 5000) + "]", "line 1: a key has at most 32 dotted parts"),
+    ("x = " + "{a = " * 40 + "1" + "}" * 40, "nested more than 32 deep"),
 ]
 
 

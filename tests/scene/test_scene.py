@@ -220,6 +220,54 @@ def test_a_dumped_file_is_the_text(tmp_path):
     assert (tmp_path / "out.toml").read_text(encoding="utf-8") == text == scene.to_toml()
 
 
+HOSTILE = (
+    None,
+    True,
+    -1,
+    0,
+    1e308,
+    -math.inf,
+    math.nan,
+    10**400,
+    "",
+    "../\0\n",
+    [],
+    [[]],
+    {},
+    [{}],
+)
+
+
+def variants(value):
+    """The value with each of its parts replaced by each hostile value, one at a time."""
+    yield from HOSTILE
+    if isinstance(value, dict):
+        for key, part in value.items():
+            yield from ({**value, key: variant} for variant in variants(part))
+    if isinstance(value, list):
+        for index, part in enumerate(value):
+            for variant in variants(part):
+                yield [*value[:index], variant, *value[index + 1 :]]
+
+
+def test_every_part_replaced_by_hostile_values_is_a_scene_or_one_line():
+    accepted = refused = 0
+    for tables in variants(EVERYTHING):
+        try:
+            scene = scene_from_dict(tables if isinstance(tables, dict) else {"x": tables})
+        except InputError as error:
+            assert "\n" not in str(error)  # noqa: PT017
+            assert len(str(error)) < 600  # noqa: PT017
+            refused += 1
+            continue
+        accepted += 1
+        if accepted % 3 == 0:
+            assert parse_scene(scene.to_toml(), file="scene") == scene
+            scene.at(0)
+    assert accepted > 200
+    assert refused > 2000
+
+
 NUMBERS = st.floats(-1e12, 1e12) | st.integers(-(10**6), 10**6)
 TEXTS = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=20)
 

@@ -53,7 +53,7 @@ def _photo(folder: Path, out: Path, engine: str) -> None:
     renderer = Renderer(load_scene(folder / "scene.toml"), engine)  # type: ignore[arg-type]
     frame = renderer.render()
     ambient: Ambient = replace(renderer.prepared.ambient, dimming=(DIMMING,) * 3)
-    dimmed = renderer.with_prepared(replace(renderer.prepared, ambient=ambient)).render()
+    dimmed = Renderer(replace(renderer.prepared, ambient=ambient), engine).render()  # type: ignore[arg-type]
     surface, lux = frame.surface, np.asarray(frame.illuminance.lux, np.float32)
     tiles = [
         ("photograph", read_picture(folder / "photo.png").values),

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
@@ -13,7 +14,7 @@ from andon.display.model import Exposure
 from andon.errors import InputError
 from andon.files.cameras import read_camera
 from andon.files.pictures import Picture, read_picture
-from andon.lamps import DirectionalLamp, HemisphereLamp, Lamp, PointLamp, SkyLamp, resolve_lamps
+from andon.lamps import Lamp, PointLamp, resolve_lamps
 from andon.quantities import CameraFrame, Photometry, photometric
 from andon.responses import LINEAR, SRGB, Response
 from andon.scene import Scene
@@ -30,36 +31,26 @@ LATER_TABLES = ("baked", "probes", "glass", "gaze", "glare")
 
 @dataclass(frozen=True)
 class Prepared:
-    """A scene, ready to be drawn.
+    """A scene with its files read, or arrays in their place: ready to be drawn.
 
     Attributes
     ----------
-    scene : as loaded.
     frames : view name → captured light; one or two views.
     surface : geometry of the scene.
     ambient : the light of the photograph.
+    lamps : time in seconds → the lamps of that moment; always the same names and kinds.
     exposure : settings of the display.
+    photometry : the word that every number carries.
     ignored : tables of the scene that this version does not draw.
     """
 
-    scene: Scene
     frames: Mapping[str, CameraFrame]
     surface: SurfaceModel
     ambient: Ambient
-    exposure: Exposure
-    ignored: tuple[str, ...]
-
-    @property
-    def photometry(self) -> Photometry:
-        """The word that every number carries."""
-        return self.scene.photometry
-
-    def lamps(self, time_seconds: float) -> tuple[Lamp, ...]:
-        """The lamps at one moment, checked against the geometry."""
-        lamps = resolve_lamps(self.scene, time_seconds)
-        if self.surface.is_distant_only:
-            _refuse_near_lamps(self.scene, lamps)
-        return lamps
+    lamps: Callable[[float], tuple[Lamp, ...]]
+    exposure: Exposure = Exposure()
+    photometry: Photometry = "absolute"
+    ignored: tuple[str, ...] = ()
 
 
 def prepare(scene: Scene, /) -> Prepared:
@@ -79,11 +70,17 @@ def prepare(scene: Scene, /) -> Prepared:
         )
         for name, picture in pictures.items()
     }
-    ignored = tuple(name for name in LATER_TABLES if getattr(scene, name))
-    prepared = Prepared(scene, frames, surface, ambient, _exposure(scene), ignored)
     eye = next(iter(frames.values())).view.position
-    _refuse_buried_lamps(scene, prepared.lamps(0.0), surface, eye)
-    return prepared
+    _check_lamps(scene, resolve_lamps(scene, 0.0), surface, eye)
+    return Prepared(
+        frames=frames,
+        surface=surface,
+        ambient=ambient,
+        lamps=lambda time_seconds: resolve_lamps(scene, time_seconds),
+        exposure=_exposure(scene),
+        photometry=scene.photometry,
+        ignored=tuple(name for name in LATER_TABLES if getattr(scene, name)),
+    )
 
 
 def _source(scene: Scene, name: str) -> tuple[str, str]:
@@ -204,7 +201,7 @@ def _ambient(scene: Scene, views: Mapping[str, View]) -> Ambient:
     return Ambient(lux, (dimming[0], dimming[1], dimming[2]), table.dimming_mode)
 
 
-def _ambient_map(scene: Scene, reference: str, views: Mapping[str, View]) -> np.ndarray:
+def _ambient_map(scene: Scene, reference: str, views: Mapping[str, View]) -> NDArray[np.float64]:
     path = scene.path(reference, "ambient.map")
     if len(views) > 1:
         raise InputError("one map for two eyes", file=scene.file, field="ambient.map")
@@ -249,24 +246,22 @@ def _exposure(scene: Scene) -> Exposure:
     return Exposure(display.exposure, display.tone)  # type: ignore[arg-type]
 
 
-def _refuse_near_lamps(scene: Scene, lamps: tuple[Lamp, ...]) -> None:
+def _check_lamps(
+    scene: Scene, lamps: tuple[Lamp, ...], surface: SurfaceModel, eye: NDArray[np.float64]
+) -> None:
+    """Refuses lamps that cannot light this surface."""
     for index, lamp in enumerate(lamps):
-        if not isinstance(lamp, DirectionalLamp | SkyLamp | HemisphereLamp):
+        if not isinstance(lamp, PointLamp):
+            continue
+        if surface.is_distant_only:
             raise InputError(
                 f"the lamp {lamp.name!r} has a place, but a normals-only surface has none",
                 file=scene.file,
                 field=f"lamp[{index}].kind",
                 remedy="use directional, sky or hemisphere, or give a depth or a mesh",
             )
-
-
-def _refuse_buried_lamps(
-    scene: Scene, lamps: tuple[Lamp, ...], surface: SurfaceModel, eye: np.ndarray
-) -> None:
-    if scene.surface is None or scene.surface.mesh is None:
-        return
-    for index, lamp in enumerate(lamps):
-        if isinstance(lamp, PointLamp) and is_buried(lamp.position_m, eye, surface.real):
+        is_mesh = scene.surface is not None and scene.surface.mesh is not None
+        if is_mesh and is_buried(lamp.position_m, eye, surface.real):
             x, y, z = lamp.position_m
             raise InputError(
                 f"the lamp {lamp.name!r} at ({x:g}, {y:g}, {z:g}) is inside a wall",

@@ -36,11 +36,15 @@ def write_atomically(path: str | Path, fill: Callable[[Path], None]) -> Path:
         if the folder cannot be written or the disk is full.
     """
     path = Path(path)
-    if not path.parent.is_dir():
+    try:
+        has_folder, is_folder = path.parent.is_dir(), path.is_dir()
+    except OSError as error:
+        raise InputError(f"the output must have a possible name: {error.strerror}") from error
+    if not has_folder or "\0" in path.name:
         raise InputError(
             "the folder of the output must exist", file=path, remedy=f"create {path.parent}"
         )
-    if path.is_dir():
+    if is_folder:
         raise InputError("the output must be a file, not a folder", file=path)
     temporary = path.with_name(f".{path.stem[:100]}.{secrets.token_hex(6)}.tmp{path.suffix}")
     try:

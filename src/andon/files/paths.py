@@ -99,18 +99,19 @@ def open_bounded(
     """
     most = limits.max_file_bytes if max_bytes is None else max_bytes
     path = Path(path)
-    _stat_bounded(path, most)
+    size = _stat_bounded(path, most)
     try:
         with path.open("rb") as stream:
-            data = stream.read(most + 1)
+            # Not read(most + 1): Python allocates what it is asked for, not what is there.
+            data = stream.read(size + 1)
     except OSError as error:
         raise InputError(f"must be readable: {error.strerror}", file=path) from error
-    if len(data) > most:
-        raise InputError(f"must have at most {most} bytes", file=path)
+    if len(data) > size:
+        raise InputError("must not grow while it is read", file=path)
     return data
 
 
-def _stat_bounded(path: Path, most: int) -> None:
+def _stat_bounded(path: Path, most: int) -> int:
     try:
         found = path.stat()
     except (FileNotFoundError, NotADirectoryError) as error:
@@ -125,3 +126,4 @@ def _stat_bounded(path: Path, most: int) -> None:
         raise InputError("must not be empty", file=path)
     if found.st_size > most:
         raise InputError(f"must have at most {most} bytes, has {found.st_size}", file=path)
+    return found.st_size

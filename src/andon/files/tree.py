@@ -25,7 +25,10 @@ def check_complexity(value: Any, file: str, limits: Limits) -> None:
         item, depth = stack.pop()
         if not isinstance(item, dict | list):
             continue
-        inner = cast("list[Any]", list(item.values()) if isinstance(item, dict) else item)
+        if isinstance(item, dict):
+            inner = list(cast("dict[str, Any]", item).values())
+        else:
+            inner = cast("list[Any]", item)
         count += 1
         if count > limits.max_nodes or depth > limits.max_depth:
             raise InputError(

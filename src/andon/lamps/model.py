@@ -28,11 +28,11 @@ class Shadow:
     Attributes
     ----------
     map_size : texels along a side of the shadow map, 16…8192.
-    filter : ``none`` hard, ``linear`` 2×2, ``pcf`` wider average.
+    filter : ``none`` hard, ``linear`` blended over one texel (2×2).
     """
 
     map_size: int = 1024
-    filter: Literal["none", "linear", "pcf"] = "pcf"
+    filter: Literal["none", "linear"] = "linear"
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ class Ambient(Table):
     @model_validator(mode="after")
     def _check_ambient(self) -> Ambient:
         exactly_one(self, "illuminance_lux", "map", "probes")
-        names = [source.name for source in self.source]
+        names = {source.name for source in self.source}
         for index, name in enumerate(self.removed):
             if name not in names:
                 raise refusal(f"there is no source {name!r}", key=f"removed[{index}]")

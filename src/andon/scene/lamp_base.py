@@ -180,9 +180,9 @@ class Shadowing(Table):
         default=1024,
         description="Texels along a side of the shadow map, 16…8192.",
     )
-    shadow_filter: Literal["none", "linear", "pcf"] = Field(
-        default="pcf",
-        description="How the shadow map is read: none (hard), linear (2×2), pcf (wider average).",
+    shadow_filter: Literal["none", "linear"] = Field(
+        default="linear",
+        description="How the shadow map is read: none (hard), linear (blended over 2×2 texels).",
     )
 
 

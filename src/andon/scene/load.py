@@ -23,6 +23,11 @@ MAX_SCENE_BYTES = 1 << 20
 # Tables in tables; the schema needs five.
 MAX_DEPTH = 32
 
+# A key of more than 32 dotted parts. The standard reader's memory grows with the square of their
+# number: one megabyte of "a.a.a…" would take all there is, so it must not get that far.
+_PART = r"""(?:[\w\-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_DEEP_KEY = re.compile(rf"(?<![\w\-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MAX_DEPTH},}}")
+
 
 def load_scene(path: str | PathLike[str]) -> Scene:
     """The scene of a TOML file; its paths are relative to the file's folder.
@@ -53,6 +58,12 @@ def parse_scene(text: str, *, folder: str | PathLike[str] = ".", file: str = "sc
     """The scene of a TOML text; `file` is named in messages. Raises `InputError`."""
     if len(text) > MAX_SCENE_BYTES:
         raise InputError(f"a scene has at most {MAX_SCENE_BYTES} characters", file=file)
+    deep = _DEEP_KEY.search(text)
+    if deep:
+        line = text.count("\n", 0, deep.start()) + 1
+        raise InputError(
+            f"a key has at most {MAX_DEPTH} dotted parts", file=file, field=f"line {line}"
+        )
     try:
         tables = tomllib.loads(text)
     except RecursionError:

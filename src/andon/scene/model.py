@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import count
 from pathlib import Path
 from typing import Any, cast
 
@@ -207,6 +208,7 @@ class Scene(Table):
     def _check_baked(self) -> None:
         inside = self.baked.lamps if self.baked is not None else ()
         transports = {lamp.name: lamp.transport for lamp in self.lamp}
+        baked = frozenset(inside)
         for index, name in enumerate(inside):
             key = f"baked.lamps[{index}]"
             if name not in transports:
@@ -218,7 +220,7 @@ class Scene(Table):
                     remedy="give it transport 'baked' or 'direct+bounce'",
                 )
         for index, lamp in enumerate(self.lamp):
-            if lamp.transport != "direct" and lamp.name not in inside:
+            if lamp.transport != "direct" and lamp.name not in baked:
                 raise refusal(
                     f"{lamp.transport!r} needs {lamp.name!r} in baked.lamps",
                     key=f"lamp[{index}].transport",
@@ -231,15 +233,14 @@ def _named(lamps: Any) -> Any:
         return lamps
     entries = cast(tuple[Any, ...], lamps)
     taken = {str(cast(dict[str, Any], e).get("name")) for e in entries if isinstance(e, dict)}
+    counters: dict[str, count[int]] = {}
     named: list[Any] = []
     for entry in entries:
         if isinstance(entry, dict) and "name" not in entry:
             table = cast(dict[str, Any], entry)
             kind = str(table.get("kind", "lamp"))[:40]
-            number = 1
-            while f"{kind}-{number}" in taken:
-                number += 1
-            taken.add(f"{kind}-{number}")
-            entry = table | {"name": f"{kind}-{number}"}
+            numbers = counters.setdefault(kind, count(1))
+            name = next(name for number in numbers if (name := f"{kind}-{number}") not in taken)
+            entry = table | {"name": name}
         named.append(entry)
     return tuple(named)

@@ -176,10 +176,11 @@ class Surface(Table):
             raise refusal(
                 "reflectance and reflectance_map exclude each other", key="reflectance_map"
             )
-        materials = [entry.material for entry in self.response]
-        for index, material in enumerate(materials):
-            if material in materials[:index]:
+        seen: set[str] = set()
+        for index, material in enumerate(entry.material for entry in self.response):
+            if material in seen:
                 raise refusal(
                     f"{material!r} has a response already", key=f"response[{index}].material"
                 )
+            seen.add(material)
         return self

@@ -22,11 +22,11 @@ from andon.spaces import View, rotate, transform_points
 from andon.surface.depth import DepthEncoding, depth_from_raw
 from andon.surface.model import EMPTY_GEOMETRY, ShadowBias, SurfaceModel
 from andon.surface.normals import normals_from_depth
-from andon.surface.occluder import Occluder, decimated, merged
+from andon.surface.occluder import decimated, merged
 from andon.surface.textures import with_linear_textures
 from andon.surface.triangulate import triangulate_depth
 
-__all__ = ["load_surface", "object_geometry"]
+__all__ = ["load_surface", "object_geometry", "surface_of_depth", "surface_of_mesh"]
 
 Float = NDArray[np.float64]
 
@@ -76,26 +76,64 @@ def _from_depth(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
     depth = depth_from_raw(read_depth_array(path), seen_by, encoding, file=str(path))
     depth = undistort(depth, view, method="nearest")
     ideal = view.undistorted()
-    if scene.surface.normals is not None:
-        normals = _read_normals(scene, view)
-    else:
-        normals = normals_from_depth(depth, ideal, max_jump=table.max_jump)
-    real = triangulate_depth(depth, ideal, max_jump=table.max_jump)
+    given = None if scene.surface.normals is None else _read_normals(scene, view)
+    return surface_of_depth(
+        depth,
+        replace(view.undistorted(), name=name),
+        normals=given,
+        max_jump=table.max_jump,
+        thickness_m=table.thickness_m,
+        occluder_triangles=scene.surface.occluder_triangles,
+        file=str(path),
+    )
+
+
+def surface_of_depth(
+    depth: Float,
+    view: View,
+    /,
+    *,
+    normals: Float | None = None,
+    max_jump: float = 0.05,
+    thickness_m: float | None = None,
+    occluder_triangles: int = 30_000,
+    file: str | None = None,
+) -> SurfaceModel:
+    """The model of a depth image (H, W) in metres, NaN in holes, of the undistorted `view`.
+
+    Parameters
+    ----------
+    normals : (H, W, 3) unit, world; default: fitted to the depth.
+    max_jump : relative step between neighbours that cuts the surface.
+    thickness_m : closes objects at their back for shadows.
+    occluder_triangles : budget of the shadow geometry; 0 keeps all.
+    """
+    if normals is None:
+        normals = normals_from_depth(depth, view, max_jump=max_jump)
+    real = triangulate_depth(depth, view, max_jump=max_jump)
     if len(real.triangles) == 0:
         raise InputError(
-            "no two neighbouring pixels have a depth",
-            file=str(path),
+            "no three neighbouring pixels have a depth on one surface",
+            file=file,
             field="surface.depth",
             remedy="check kind and scale_to_m",
         )
     closed = real
-    if table.thickness_m is not None:
-        closed = triangulate_depth(
-            depth, ideal, max_jump=table.max_jump, thickness_m=table.thickness_m
-        )
-    occluder = decimated(closed, scene.surface.occluder_triangles, view.position)
+    if thickness_m is not None:
+        closed = triangulate_depth(depth, view, max_jump=max_jump, thickness_m=thickness_m)
+    occluder = decimated(closed, occluder_triangles, view.position)
     bias = max(DEPTH_BIAS_M, DECIMATION_MARGIN * occluder.error_m)
+    name = view.name
     return SurfaceModel(real, {name: depth}, {name: normals}, occluder=occluder, bias=_bias(bias))
+
+
+def surface_of_mesh(
+    real: Geometry, eye: Float, /, *, occluder_triangles: int = 30_000
+) -> SurfaceModel:
+    """The model of triangles in the world; `eye` (3,) is where decimation is judged from."""
+    occluder = decimated(merged(real), occluder_triangles, eye)
+    bias = max(MESH_BIAS_M, DECIMATION_MARGIN * occluder.error_m)
+    return SurfaceModel(real, occluder=occluder, bias=_bias(bias))
 
 
 def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
@@ -108,9 +146,8 @@ def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
     real = _read_geometry(scene, path, world_from_mesh)
     if scene.surface.reflectance is not None:
         real = _with_reflectance(real, scene.surface.reflectance)
-    occluder = decimated(merged(real), scene.surface.occluder_triangles, view.position)
-    bias = max(MESH_BIAS_M, DECIMATION_MARGIN * occluder.error_m)
-    return SurfaceModel(real, occluder=occluder, bias=_bias(bias))
+    budget = scene.surface.occluder_triangles
+    return surface_of_mesh(real, view.position, occluder_triangles=budget)
 
 
 def _bias(real_m: float) -> ShadowBias:

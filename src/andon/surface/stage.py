@@ -58,9 +58,9 @@ class GpuSurface:
         fields = unpack_surface(self.texture.read(), self.view)
         points = reference.from_depth(fields["depth"], fields["normal"], self.view)
         emitted = np.zeros_like(points.reflectance)
-        if len(self.emitted_cd_m2):
-            emitted = self.emitted_cd_m2[np.maximum(fields["material_id"], 0)]
-        emitted = emitted * fields["is_object"][..., None]
+        # Numbers of materials are the objects' own; the real surface's emission is in the photo.
+        objects = fields["is_object"]
+        emitted[objects] = self.emitted_cd_m2[fields["material_id"][objects]]
         return Surface(**{**vars(points), **fields, "emitted_cd_m2": emitted, "view": self.view})
 
 

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from andon.files.depth.netpbm import read_pfm, read_pgm
 from andon.files.depth.numpy_files import read_npy, read_npz
 from andon.files.limits import DEFAULT_LIMITS, Limits
+from andon.files.numbers import to_float64
 from andon.files.paths import open_bounded
 from andon.files.pictures.exr import read_exr_part
 from andon.files.pictures.png import decode_png_raw
@@ -42,7 +43,7 @@ def _read_png(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> NDArray[n
 def _read_exr(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> NDArray[np.float64]:
     part = read_exr_part(path, limits=limits)
     names = sorted(part.channels, key=lambda name: (_depth_rank(name), name))
-    return part.placed(part.channels[names[0]], np.nan).astype(np.float64)
+    return to_float64(part.placed(part.channels[names[0]], np.nan))
 
 
 def _depth_rank(name: str) -> int:

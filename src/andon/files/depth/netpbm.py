@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.limits import DEFAULT_LIMITS, Limits, check_size
+from andon.files.numbers import to_float64
 from andon.files.paths import open_bounded
 
 __all__ = ["read_pfm", "read_pgm"]
@@ -86,7 +87,7 @@ def _pixels(
     if len(data) < needed:
         raise InputError(f"must have {needed} bytes, is cut short at {len(data)}", file=path)
     values = np.frombuffer(data, kind, count=rows * columns, offset=start)
-    return values.reshape(rows, columns).astype(np.float64)
+    return to_float64(values.reshape(rows, columns))
 
 
 def _text_pixels(text: bytes, rows: int, columns: int, path: str | Path) -> NDArray[np.float64]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.limits import DEFAULT_LIMITS, Limits, check_size
+from andon.files.numbers import to_float64
 from andon.files.paths import open_bounded
 
 __all__ = ["read_npy", "read_npz"]
@@ -100,4 +101,4 @@ def _parse_npy(data: bytes, path: str | Path, limits: Limits) -> NDArray[np.floa
         raise InputError(f"must have {needed} bytes, is cut short at {len(data)}", file=path)
     height, width = _two_sides(shape, path)
     values = np.frombuffer(data, dtype, count=height * width, offset=start)
-    return values.reshape((height, width), order="F" if fortran else "C").astype(np.float64)
+    return to_float64(values.reshape((height, width), order="F" if fortran else "C"))

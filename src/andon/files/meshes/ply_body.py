@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.meshes.assemble import parse_numbers
+from andon.files.numbers import to_float64
 
 __all__ = ["BinaryBody", "Body", "Element", "Property", "TextBody"]
 
@@ -128,7 +129,7 @@ class BinaryBody:
     def columns(self, element: Element) -> Columns:
         """See `Body.columns`."""
         rows = self._rows(element, [(p.name, self._order + p.kind) for p in element.properties])
-        return {p.name: rows[p.name].astype(np.float64) for p in element.properties}
+        return {p.name: to_float64(rows[p.name]) for p in element.properties}
 
     def lists(self, element: Element, wanted: str) -> Lists:
         """See `Body.lists`."""
@@ -156,7 +157,7 @@ class BinaryBody:
                 if is_wanted:
                     counts[row] = length
                     values = np.frombuffer(self._data, kind, count=length, offset=at)
-                    parts.append(values.astype(np.float64))
+                    parts.append(to_float64(values))
                 at = end
         self._at = at
         return counts, np.concatenate(parts) if parts else np.empty(0)
@@ -196,7 +197,7 @@ class BinaryBody:
         if any((rows[f"{name} length"] != length).any() for name, length in lengths.items()):
             self._at = start
             return None
-        flat = rows[wanted].astype(np.float64).ravel()
+        flat = to_float64(rows[wanted]).ravel()
         return np.full(element.count, lengths[wanted]), flat
 
     def _rows(self, element: Element, fields: list[Any]) -> NDArray[Any]:

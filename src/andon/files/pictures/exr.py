@@ -6,9 +6,11 @@ so the header is read and judged first and the channels are checked after.
 
 from __future__ import annotations
 
+import contextlib
+import io
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,10 +101,16 @@ def read_exr_part(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> ExrPa
         for key, value in header.items()
         if isinstance(value, str | int | float) and key not in HEADER_OF_LAYOUT
     }
-    chromaticities = header.get("chromaticities")
-    if chromaticities is not None:
-        chromaticities = tuple(float(value) for value in chromaticities)
-    return ExrPart(channels, origin, shape, attributes, chromaticities)
+    return ExrPart(channels, origin, shape, attributes, _chromaticities(header, path))
+
+
+def _chromaticities(header: dict[str, Any], path: str | Path) -> tuple[float, ...] | None:
+    stated = header.get("chromaticities")
+    if stated is None:
+        return None
+    if not isinstance(stated, tuple) or len(cast("tuple[Any, ...]", stated)) != 8:
+        raise InputError("must be eight numbers", file=path, field="chromaticities")
+    return tuple(float(value) for value in cast("tuple[Any, ...]", stated))
 
 
 def openexr() -> Any:
@@ -114,16 +122,23 @@ def openexr() -> Any:
 
 def _open(path: str | Path, *, header_only: bool) -> Any:
     """The first part as the wheel gives it; every complaint of the wheel is an `InputError`."""
+    remarks = io.StringIO()
     try:
-        opened = openexr().File(str(path), separate_channels=True, header_only=header_only)
+        # The wheel prints its remarks on damaged pixels to standard output, where results go.
+        with contextlib.redirect_stdout(remarks):
+            opened = openexr().File(str(path), separate_channels=True, header_only=header_only)
         parts: list[Any] = opened.parts
     except Exception as error:  # the wheel raises RuntimeError, ValueError, UnicodeDecodeError …
         line = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise InputError(
             f"must be a sound OpenEXR file: {line[:200]}", file=path, remedy="export it again"
         ) from error
-    if not parts:
-        raise InputError("must have a part; the file is damaged or cut short", file=path)
+    if remarks.getvalue() or not parts:
+        raise InputError(
+            "must be a sound OpenEXR file, its pixels are damaged or cut short",
+            file=path,
+            remedy="export it again",
+        )
     return parts[0]
 
 

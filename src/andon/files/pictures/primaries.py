@@ -41,7 +41,8 @@ def _xyz_from_rgb(chromaticities: tuple[float, ...]) -> Float:
 def adapt_white(target_xy: tuple[float, ...], source_xy: tuple[float, ...]) -> Float:
     """XYZ under the target white from XYZ under the source white, (3, 3), by Bradford."""
     cones = (BRADFORD @ _xyz_of_xy(target_xy)) / (BRADFORD @ _xyz_of_xy(source_xy))
-    return np.linalg.solve(BRADFORD, cones[:, None] * BRADFORD)
+    scaled: Float = cones[:, None] * BRADFORD
+    return np.linalg.inv(BRADFORD) @ scaled
 
 
 def rec709_from_xyz(white_xy: tuple[float, ...] = D65_XY) -> Float:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from andon.files.limits import check_at_most
 from andon.files.meshes.gltf.container import Document
+from andon.files.numbers import to_float64
 from andon.files.paths import confined, open_bounded
 from andon.files.tree import Tree
 
@@ -60,7 +61,7 @@ class BufferStore:
             stored = self._patched(stored, sparse)
         if accessor.get("normalized") and accessor.at("normalized").boolean():
             return _normalised(stored)
-        return stored.astype(np.float64) if stored.dtype.kind == "f" else stored
+        return to_float64(stored) if stored.dtype.kind == "f" else stored
 
     def _stored(self, accessor: Tree, count: int, width: int) -> NDArray[Any]:
         kind = _component(accessor)
@@ -71,7 +72,7 @@ class BufferStore:
             return np.zeros((count, width), kind)
         view = self._document.entry("bufferViews", view_index)
         tight = kind.itemsize * width
-        stride = _integer(view, "byteStride", tight, 2**16)
+        stride = _integer(view, "byteStride", 0, 2**16) or tight
         if stride < tight:
             raise view.error(f"must have a byteStride of {tight} or more, has {stride}")
         return self._strided(accessor, view_index, count, width, kind, stride)
@@ -173,7 +174,7 @@ def _component(owner: Tree) -> np.dtype[Any]:
 def _normalised(values: NDArray[Any]) -> NDArray[np.float64]:
     """Integers as fractions of their type's largest value (3.6.2.2); floats unchanged."""
     if values.dtype.kind == "f":
-        return values.astype(np.float64)
+        return to_float64(values)
     return np.maximum(values / float(np.iinfo(values.dtype).max), -1.0)
 
 

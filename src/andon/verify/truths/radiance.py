@@ -1,0 +1,283 @@
+"""Illuminance truth: Radiance's `rtrace -I` on the same triangles and lamps.
+
+::
+
+    Geometry, sources ──▶ scene text ──oconv──▶ octree ──rtrace -I──▶ W/m² per channel ──×179──▶ lux
+
+The programs come with the `pyradiance` wheel and are called as programs. Everything is exact where
+`rtrace` allows it: every lamp is tested (``-dt 0 -dc 1``), none is jittered (``-dj 0``), numbers
+travel as binary doubles. Emission and textures of the geometry's materials are not exported: give
+what emits as sources.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.errors import InputError, MachineError
+from andon.quantities import Geometry
+from andon.verify.truths.sources import (
+    LUMENS_PER_WATT,
+    SPOT_CAL,
+    AreaSource,
+    DirectionalSource,
+    PointSource,
+    Source,
+    SpotSource,
+    source_text,
+    triangles_text,
+)
+
+__all__ = [
+    "AreaSource",
+    "DirectionalSource",
+    "PointSource",
+    "RadianceScene",
+    "Source",
+    "SpotSource",
+    "Timing",
+    "irradiance",
+    "time_picture",
+]
+
+Float = NDArray[np.float64]
+
+# `rtrace -I` evaluates 1e-4 m above the point it is given (measured: closed forms agree to 3e-7
+# there, and the point is in its own shadow if moved back further). Points are moved back so that
+# LIFT_M remains: above the rounding of float32 positions, below 0.01 % of E at 0.2 m.
+RTRACE_LIFT_M = 1e-4
+LIFT_M = 1e-5
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Wall time of whole `rtrace` runs, the reading of the octree included.
+
+    Attributes
+    ----------
+    seconds : one per run.
+    points : asked in each run.
+    """
+
+    seconds: tuple[float, ...]
+    points: int
+
+
+class RadianceScene:
+    """An octree that is built once and asked many times; a context manager.
+
+    Parameters
+    ----------
+    geometry : its triangles, with `Material.reflectance` where there are bounces.
+    lamps : what emits; may be empty.
+    time_limit_seconds : for each program run; more is a `MachineError`.
+
+    Raises
+    ------
+    MachineError : Radiance's programs are missing, failed or took too long.
+    InputError : a lamp or material that cannot be said in Radiance's terms.
+    """
+
+    def __init__(
+        self,
+        geometry: Geometry,
+        lamps: Sequence[Source],
+        *,
+        time_limit_seconds: float = 600.0,
+    ) -> None:
+        self._geometry, self._lamps = geometry, tuple(lamps)
+        self._limit = time_limit_seconds
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+
+    def __enter__(self) -> Self:
+        self._folder = tempfile.TemporaryDirectory(prefix="andon-radiance-")
+        try:
+            self._build(Path(self._folder.name))
+        except BaseException:
+            self._folder.cleanup()
+            raise
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._folder is not None:
+            self._folder.cleanup()
+            self._folder = None
+
+    def _build(self, folder: Path) -> None:
+        spot_cal = folder / "spot.cal"
+        spot_cal.write_text(SPOT_CAL, encoding="ascii")
+        text = _geometry_text(self._geometry) + "".join(
+            source_text(lamp, f"lamp{number}", str(spot_cal))
+            for number, lamp in enumerate(self._lamps)
+        )
+        scene = folder / "scene.rad"
+        scene.write_text(text, encoding="ascii")
+        octree = _run("oconv", ["-w", str(scene)], b"", self._limit)
+        (folder / "scene.oct").write_bytes(octree)
+
+    def irradiance(
+        self,
+        points: NDArray[Any],
+        normals: NDArray[Any],
+        /,
+        *,
+        ambient_bounces: int = 0,
+        ambient_divisions: int = 1024,
+        ambient_accuracy: float = 0.1,
+        source_subdivision: float = 0.0,
+        threads: int | None = None,
+    ) -> Float:
+        """(n, 3) lux on surfaces at `points` (n, 3) metres that face `normals` (n, 3).
+
+        Parameters
+        ----------
+        ambient_bounces : diffuse bounces (``-ab``); 0 is direct light only.
+        ambient_divisions, ambient_accuracy : ``-ad`` and ``-aa``, used with bounces only.
+        source_subdivision : ``-ds``, cuts area lamps down to this share of their distance;
+            0 takes each triangle as one sample, right for fine meshes.
+        threads : processes of `rtrace`; None takes all cores.
+        """
+        if self._folder is None:
+            raise InputError("must be entered before it is asked", field="RadianceScene")
+        rays = _rays(points, normals)
+        if len(rays) == 0:
+            return np.empty((0, 3))
+        options = {
+            "ab": ambient_bounces,
+            "ad": ambient_divisions,
+            "as": ambient_divisions // 4,
+            "aa": ambient_accuracy,
+            "ds": source_subdivision,
+            "n": threads or os.cpu_count() or 1,
+        }
+        # -dr 0: no mirrors, so no virtual lamps; -lw 0 -lr: only bounces are counted down.
+        fixed = "-I -h -w -fd -dt 0 -dc 1 -dj 0 -dr 0".split()
+        chosen = [word for key, value in options.items() for word in (f"-{key}", str(value))]
+        octree = str(Path(self._folder.name) / "scene.oct")
+        answer = _run("rtrace", [*fixed, *chosen, octree], rays.tobytes(), self._limit)
+        watts = np.frombuffer(answer, np.float64)
+        if watts.size != 3 * len(rays):
+            raise MachineError(
+                f"rtrace answered {watts.size} numbers for {len(rays)} points",
+                remedy="check that memory and disk have room",
+            )
+        return watts.reshape(-1, 3) * LUMENS_PER_WATT
+
+
+def irradiance(
+    geometry: Geometry,
+    lamps: Sequence[Source],
+    points: NDArray[Any],
+    normals: NDArray[Any],
+    /,
+    *,
+    ambient_bounces: int = 0,
+    threads: int | None = None,
+) -> Float:
+    """(n, 3) lux, see `RadianceScene.irradiance`; builds the octree anew at every call."""
+    with RadianceScene(geometry, lamps) as scene:
+        return scene.irradiance(points, normals, ambient_bounces=ambient_bounces, threads=threads)
+
+
+def time_picture(
+    scene: RadianceScene,
+    points: NDArray[Any],
+    normals: NDArray[Any],
+    /,
+    *,
+    repeats: int = 1,
+    threads: int | None = None,
+) -> Timing:
+    """How long Radiance takes for the direct light of a picture: one (n, 3) point per pixel."""
+    seconds: list[float] = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        scene.irradiance(points, normals, threads=threads)
+        seconds.append(time.perf_counter() - start)
+    return Timing(tuple(seconds), len(points))
+
+
+def _rays(points: NDArray[Any], normals: NDArray[Any]) -> Float:
+    """(n, 6) float64: origins moved to where `rtrace` evaluates `LIFT_M` above, and normals."""
+    origins, facing = np.asarray(points, np.float64), np.asarray(normals, np.float64)
+    for field, values in (("points", origins), ("normals", facing)):
+        if values.ndim != 2 or values.shape[1] != 3 or not np.isfinite(values).all():
+            raise InputError(f"must be finite (n, 3), got shape {values.shape}", field=field)
+    if origins.shape != facing.shape:
+        raise InputError(f"must have the shape of points {origins.shape}", field="normals")
+    length = np.linalg.norm(facing, axis=1, keepdims=True)
+    if not (length > 0).all():
+        # A zero direction tells rtrace to flush its output, it would give no number at all.
+        raise InputError("must not be zero", field="normals")
+    facing = facing / length
+    return np.concatenate([origins - (RTRACE_LIFT_M - LIFT_M) * facing, facing], axis=1)
+
+
+def _geometry_text(geometry: Geometry) -> str:
+    count = len(geometry.triangles)
+    ids = np.zeros(count, np.int32) if geometry.material_ids is None else geometry.material_ids
+    corners = np.asarray(geometry.positions, np.float64)[geometry.triangles]
+    text = ""
+    for number, material in enumerate(geometry.materials):
+        if material.texture is not None:
+            raise InputError(
+                "textures are not exported to Radiance",
+                field=f"materials[{number}].texture",
+                remedy="give the surface one reflectance",
+            )
+        red, green, blue = material.reflectance
+        text += f"void plastic m{number} 0 0 5 {red!r} {green!r} {blue!r} 0 0\n"
+        text += triangles_text(corners[ids == number], f"m{number}")
+    return text
+
+
+def _run(program: str, arguments: list[str], feed: bytes, limit: float) -> bytes:
+    folder = _package_folder()
+    path = shutil.which(program, path=str(folder / "bin"))
+    if path is None:
+        raise MachineError(
+            f"Radiance's {program} is not in {folder / 'bin'}", remedy=_INSTALL_REMEDY
+        )
+    environment = dict(os.environ, RAYPATH=str(folder / "lib"))
+    try:
+        done = subprocess.run(
+            [path, *arguments], input=feed, capture_output=True, env=environment, timeout=limit
+        )
+    except subprocess.TimeoutExpired as error:
+        raise MachineError(
+            f"Radiance's {program} took more than {limit:g} s", remedy="ask for fewer points"
+        ) from error
+    if done.returncode != 0:
+        lines = done.stderr.decode(errors="replace").split("\n")
+        message = " ".join(line.strip() for line in lines if line.strip())
+        raise MachineError(f"Radiance's {program} failed ({done.returncode}): {message[:300]}")
+    return done.stdout
+
+
+_INSTALL_REMEDY = "install it with: pip install 'andon[radiance]'"
+
+
+def _package_folder() -> Path:
+    """Where the `pyradiance` wheel lies; it is found, not imported (0.3 s, and not needed)."""
+    spec = find_spec("pyradiance")
+    if spec is None or spec.origin is None:
+        raise MachineError("Radiance's programs are missing", remedy=_INSTALL_REMEDY)
+    return Path(spec.origin).parent

@@ -17,7 +17,7 @@ NO_ADAPTER = (
 )
 
 
-# wgpu falls back to OpenGL where there is no Vulkan, Metal or D3D12. It lacks what the rest may rely
+# wgpu falls back to OpenGL where there is no Vulkan, Metal or D3D12. It lacks what the rest relies
 # on (float render targets), so it counts as no adapter.
 OPENGL = "OpenGL"
 

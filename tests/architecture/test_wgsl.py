@@ -70,7 +70,7 @@ def test_every_module_is_used():
 def test_cycles_are_refused(monkeypatch):
     texts = {"andon/a.wgsl": "//!import andon/b.wgsl\n", "andon/b.wgsl": "//!import andon/a.wgsl\n"}
     monkeypatch.setattr(wgsl, "_read", texts.__getitem__)
-    with pytest.raises(ValueError, match="cycle: andon/a.wgsl → andon/b.wgsl → andon/a.wgsl"):
+    with pytest.raises(ValueError, match=r"cycle: andon/a\.wgsl → andon/b\.wgsl → andon/a\.wgsl"):
         wgsl.resolve("andon/a.wgsl")
 
 
@@ -83,19 +83,23 @@ def test_imports_stay_in_the_package(path):
 # ── compilation ─────────────────────────────────────────────────────────────────────────────────
 
 
-@pytest.mark.parametrize("path", PROGRAMS)
-@pytest.mark.parametrize("variant", VARIANTS)
-def test_compiles(gpu, path, variant):
-    exchanged = VARIANTS[variant]
-    text = wgsl.resolve(path, STRUCTS, exchanged)
-    if text == wgsl.resolve(path, STRUCTS) and exchanged:
-        pytest.skip("does not import what the variant exchanges")
-    shader_module(gpu, path, STRUCTS, exchanged)
+def compilations():
+    """(variant, path): every program as written, and in each variant that changes it."""
+    for path in PROGRAMS:
+        plain = wgsl.resolve(path, STRUCTS)
+        for name, exchanged in VARIANTS.items():
+            if not exchanged or wgsl.resolve(path, STRUCTS, exchanged) != plain:
+                yield name, path
+
+
+@pytest.mark.parametrize(("variant", "path"), list(compilations()))
+def test_compiles(gpu, variant, path):
+    shader_module(gpu, path, STRUCTS, VARIANTS[variant])
 
 
 def test_a_wrong_shader_does_not_compile(gpu, monkeypatch):
     monkeypatch.setattr(wgsl, "_read", lambda path: "fn broken() -> f32 { return vec3f(1.0); }")
-    with pytest.raises(Exception, match="broken|type"):
+    with pytest.raises(Exception, match=r"broken"):
         shader_module(gpu, "andon/broken.wgsl")
 
 

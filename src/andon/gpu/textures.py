@@ -23,6 +23,7 @@ _FORMATS: dict[str, tuple[str, int]] = {
     "rgba32float": ("<f4", 4),
     "rgba32uint": ("<u4", 4),
     "r32float": ("<f4", 1),
+    "r32uint": ("<u4", 1),
     "rg32float": ("<f4", 2),
     "rg16float": ("<f2", 2),
     "depth32float": ("<f4", 1),

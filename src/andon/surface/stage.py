@@ -31,6 +31,8 @@ from andon.surface.textures import TEXTURE_SIDE_PX
 __all__ = ["GpuSurface", "SurfaceStage"]
 
 SHADER = "andon/surface/raster.wgsl"
+# Integer division costs a software rasteriser more than all the rest of the shader.
+PLAIN, TEXTURED = "andon/surface/plain.wgsl", "andon/surface/textured.wgsl"
 VERTEX = np.dtype(
     [("position", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("material", "<u4")]
 )
@@ -99,8 +101,11 @@ class SurfaceStage:
         return not self._draws
 
     def _make_pipelines(self) -> None:
-        gpu, view = self.gpu, self.view
-        module = shader_module(gpu, SHADER, STRUCTS, projection_variant(view))
+        gpu, view, model = self.gpu, self.view, self.model
+        variants = projection_variant(view)
+        if any(m.texture is not None for m in (*model.real.materials, *model.objects.materials)):
+            variants |= {PLAIN: TEXTURED}
+        module = shader_module(gpu, SHADER, STRUCTS, variants)
         self._depth = make_texture(gpu, "depth32float", view.width, view.height)
         attributes = [
             {"format": "float32x3", "offset": 0, "shader_location": 0},

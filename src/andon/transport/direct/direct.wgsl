@@ -12,7 +12,7 @@
 @group(1) @binding(3) var planes: texture_depth_2d_array;
 
 // Two surfaces closer than this share of their distance are one: float32 rounding of a depth map.
-const SAME_DEPTH: f32 = 2e-4;
+const SAME_DEPTH: f32 = 2e-5;
 
 // A shadow query: what a filter needs to ask the map at one texel. `reach` = P − lamp,
 // `away` = normal·reach < 0, lifted by the bias.

@@ -73,7 +73,17 @@ class Report:
 
 @dataclass(frozen=True)
 class Frame:
-    """One view of one moment: every quantity that flowed, as arrays (H, W, …)."""
+    """One view of one moment: every quantity that flowed, as arrays (H, W, …).
+
+    Attributes
+    ----------
+    captured : the photograph as linear light.
+    surface : what is where; which pixels are holes or virtual objects.
+    illuminance : ΔE that the lamps add, lx.
+    luminance : what leaves towards the camera, cd/m².
+    image : 8-bit codes for the screen.
+    report : engine, times, holes and what else is worth knowing.
+    """
 
     captured: CameraFrame
     surface: Surface

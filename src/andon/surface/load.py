@@ -57,6 +57,13 @@ def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
     elif scene.surface.mesh is not None:
         model = _from_mesh(scene, next(iter(views.values())))
     else:
+        if scene.object:
+            raise InputError(
+                "needs a surface with a place, and normals alone have none",
+                file=scene.file,
+                field="object[0]",
+                remedy="give a depth or a mesh, or leave the object out",
+            )
         normals = {name: _read_normals(scene, view) for name, view in views.items()}
         model = SurfaceModel(normals=normals)
     return replace(model, objects=objects, casters=casters)
@@ -75,7 +82,6 @@ def _from_depth(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
     seen_by = view if table.focal_px is None else replace(view, fx=table.focal_px)
     depth = depth_from_raw(read_depth_array(path), seen_by, encoding, file=str(path))
     depth = undistort(depth, view, method="nearest")
-    ideal = view.undistorted()
     given = None if scene.surface.normals is None else _read_normals(scene, view)
     return surface_of_depth(
         depth,

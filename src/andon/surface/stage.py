@@ -44,10 +44,18 @@ class GpuSurface:
     texture : (H, W) rgba32uint, see gbuffer.wgsl.
     view_buffer : one `VIEW_RECORD`.
     emitted_cd_m2 : (materials, 3), what the materials of virtual objects emit.
+    has_positions : False for a normals-only surface.
     """
 
-    def __init__(self, gpu: Gpu, view: View, emitted_cd_m2: NDArray[np.float64]) -> None:
-        self.view = view
+    def __init__(
+        self,
+        gpu: Gpu,
+        view: View,
+        emitted_cd_m2: NDArray[np.float64],
+        *,
+        has_positions: bool = True,
+    ) -> None:
+        self.view, self.has_positions = view, has_positions
         self.emitted_cd_m2 = emitted_cd_m2
         self.texture = make_texture(gpu, "rgba32uint", view.width, view.height, label="g-buffer")
         self.view_buffer = uniform_buffer(gpu, VIEW_RECORD.dtype.itemsize, "view")
@@ -56,7 +64,11 @@ class GpuSurface:
     def read(self) -> Surface:
         """The surface as arrays; precision of the packing: normals 6.5e-5 rad, depth float32."""
         fields = unpack_surface(self.texture.read(), self.view)
-        points = reference.from_depth(fields["depth"], fields["normal"], self.view)
+        if self.has_positions:
+            points = reference.from_depth(fields["depth"], fields["normal"], self.view)
+        else:
+            normals = np.where(fields["valid"][..., None], fields["normal"], np.nan)
+            points = reference.from_normals(normals, self.view)
         emitted = np.zeros_like(points.reflectance)
         if len(self.emitted_cd_m2):
             emitted = self.emitted_cd_m2[np.maximum(fields["material_id"], 0)]
@@ -75,7 +87,7 @@ class SurfaceStage:
         self.gpu, self.model, self.view = gpu, model, view
         objects = model.objects
         emitted = np.array([m.emissive_cd_m2 for m in objects.materials], float).reshape(-1, 3)
-        self.surface = GpuSurface(gpu, view, emitted)
+        self.surface = GpuSurface(gpu, view, emitted, has_positions=not model.is_distant_only)
         on_host = view.projection != "pinhole"
         has_picture = view.name in model.depth or model.is_distant_only
         self._draws: list[_Draw] = []

@@ -114,9 +114,11 @@ def surface_of_depth(
     thickness_m : closes objects at their back for shadows.
     occluder_triangles : budget of the shadow geometry; 0 keeps all.
     """
+    is_whole = normals is None
     if normals is None:
         normals = normals_from_depth(depth, view, max_jump=max_jump)
-    real = triangulate_depth(depth, view, max_jump=max_jump)
+    lit = np.where(np.isfinite(normals).all(axis=-1), depth, np.nan)
+    real = triangulate_depth(lit, view, max_jump=max_jump, normals=normals)
     if len(real.triangles) == 0:
         raise InputError(
             "no three neighbouring pixels have a depth on one surface",
@@ -125,7 +127,7 @@ def surface_of_depth(
             remedy="check kind and scale_to_m",
         )
     closed = real
-    if thickness_m is not None:
+    if thickness_m is not None or not is_whole:
         closed = triangulate_depth(depth, view, max_jump=max_jump, thickness_m=thickness_m)
     occluder = decimated(closed, occluder_triangles, view.position)
     bias = max(DEPTH_BIAS_M, DECIMATION_MARGIN * occluder.error_m)

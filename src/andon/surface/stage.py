@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.gpu.device import Gpu
-from andon.gpu.bindings import BindGroup, bind_group
-from andon.gpu.passes import color_attachment, pipeline_layout, shader_module
-from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
-from andon.quantities import Geometry, Surface
-from andon.rays import face_normals
-from andon.spaces import View
-from andon.surface import reference
-from andon.surface.model import SurfaceModel
 from andon.gbuffer import (
     OBJECT,
     STRUCTS,
@@ -26,6 +18,15 @@ from andon.gbuffer import (
     projection_variant,
     unpack_surface,
 )
+from andon.gpu.bindings import BindGroup, bind_group
+from andon.gpu.device import Gpu
+from andon.gpu.passes import color_attachment, pipeline_layout, shader_module
+from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
+from andon.quantities import Geometry, Surface
+from andon.rays import face_normals
+from andon.spaces import View
+from andon.surface import reference
+from andon.surface.model import SurfaceModel
 from andon.surface.textures import TEXTURE_SIDE_PX
 
 __all__ = ["GpuSurface", "SurfaceStage"]
@@ -44,7 +45,7 @@ class GpuSurface:
     texture : (H, W) rgba32uint, see gbuffer.wgsl.
     view_buffer : one `VIEW_RECORD`.
     emitted_cd_m2 : (materials, 3), what the materials of virtual objects emit.
-    has_positions : False for a normals-only surface.
+    model : what is seen; says which pixels have a material and a position of their own.
     """
 
     def __init__(
@@ -52,10 +53,9 @@ class GpuSurface:
         gpu: Gpu,
         view: View,
         emitted_cd_m2: NDArray[np.float64],
-        *,
-        has_positions: bool = True,
+        model: SurfaceModel,
     ) -> None:
-        self.view, self.has_positions = view, has_positions
+        self.view, self.model = view, model
         self.emitted_cd_m2 = emitted_cd_m2
         self.texture = make_texture(gpu, "rgba32uint", view.width, view.height, label="g-buffer")
         self.view_buffer = uniform_buffer(gpu, VIEW_RECORD.dtype.itemsize, "view")
@@ -64,16 +64,18 @@ class GpuSurface:
     def read(self) -> Surface:
         """The surface as arrays; precision of the packing: normals 6.5e-5 rad, depth float32."""
         fields = unpack_surface(self.texture.read(), self.view)
-        if self.has_positions:
-            points = reference.from_depth(fields["depth"], fields["normal"], self.view)
-        else:
+        is_object = fields["is_object"]
+        if self.model.is_distant_only:
             normals = np.where(fields["valid"][..., None], fields["normal"], np.nan)
             points = reference.from_normals(normals, self.view)
+        else:
+            points = reference.from_depth(fields["depth"], fields["normal"], self.view)
+        if self.view.name in self.model.depth or self.model.is_distant_only:
+            fields["material_id"] = np.where(is_object, fields["material_id"], -1)
         emitted = np.zeros_like(points.reflectance)
-        if len(self.emitted_cd_m2):
-            emitted = self.emitted_cd_m2[np.maximum(fields["material_id"], 0)]
-        emitted = emitted * fields["is_object"][..., None]
-        return Surface(**{**vars(points), **fields, "emitted_cd_m2": emitted, "view": self.view})
+        emitted[is_object] = self.emitted_cd_m2[fields["material_id"][is_object]]
+        fields["normal"] = points.normal
+        return replace(points, **fields, emitted_cd_m2=emitted)
 
 
 class SurfaceStage:
@@ -87,7 +89,7 @@ class SurfaceStage:
         self.gpu, self.model, self.view = gpu, model, view
         objects = model.objects
         emitted = np.array([m.emissive_cd_m2 for m in objects.materials], float).reshape(-1, 3)
-        self.surface = GpuSurface(gpu, view, emitted, has_positions=not model.is_distant_only)
+        self.surface = GpuSurface(gpu, view, emitted, model)
         on_host = view.projection != "pinhole"
         has_picture = view.name in model.depth or model.is_distant_only
         self._draws: list[_Draw] = []
@@ -100,7 +102,7 @@ class SurfaceStage:
             self._background = make_texture(gpu, "rgba32uint", view.width, view.height)
             self._background.write(pack_surface(real))
         self._make_pipelines()
-        if not has_picture:
+        if not has_picture and len(model.real.triangles):
             self._draws.append(_Draw(self, model.real, VALID))
         if len(objects.triangles):
             self._draws.append(_Draw(self, objects, VALID | OBJECT))

@@ -199,3 +199,41 @@ def test_merging_moves_indices():
     assert len(both.triangles) == 2 * len(a.triangles)
     assert both.triangles.max() == 2 * len(a.positions) - 1
     assert_agree(both.positions[both.triangles[-1]], a.positions[a.triangles[-1]])
+
+
+def test_another_eye_is_given_the_fitted_normals():
+    """Flat triangles of a noisy depth would light the same point differently in the other eye."""
+    from andon.surface.load import surface_of_depth
+    from andon.surface.reference import see
+
+    depth, expected = sphere_depth(PINHOLE, (0.1, 0, 2.0), 0.8)
+    expected = expected @ POSE[:3, :3].T
+    noisy = depth * (1 + 0.001 * np.random.default_rng(2).normal(size=depth.shape))
+    model = surface_of_depth(noisy, PINHOLE)
+    pose = POSE.copy()
+    pose[:3, 3] += POSE[:3, 0] * 0.05
+    other = View(**{**vars(PINHOLE), "world_from_camera": pose, "name": "right"})
+    seen = see(model, other)
+    centre = PINHOLE.world_from_camera[:3] @ (0.1, 0, 2.0, 1)
+    errors = {}
+    for name, normal, mask in (
+        ("fitted", model.normals["mono"], np.isfinite(depth)),
+        ("other", seen.normal, seen.valid),
+    ):
+        position = seen.position if name == "other" else see(model, PINHOLE).position
+        truth = unit(position[mask] - centre)
+        errors[name] = np.median(np.linalg.norm(np.cross(normal[mask], truth), axis=-1))
+    assert errors["other"] < 1.2 * errors["fitted"]
+
+
+def test_pixels_without_a_normal_are_holes_for_every_eye():
+    from andon.surface.load import surface_of_depth
+
+    depth = np.full(PINHOLE.shape, 2.0)
+    normals = np.broadcast_to(-POSE[:3, 2], (*PINHOLE.shape, 3)).copy()
+    normals[10:14, 10:14] = np.nan
+    model = surface_of_depth(depth, PINHOLE, normals=normals)
+    assert np.isfinite(model.real.normals).all()
+    assert len(model.real.triangles) < 2 * 39 * 29
+    # They still stand in the light.
+    assert len(model.occluder.geometry.triangles) == 2 * 39 * 29

@@ -224,7 +224,9 @@ def _ambient_map(scene: Scene, reference: str, views: Mapping[str, View]) -> NDA
         )
     from andon.lenses import undistort
 
-    return np.asarray(undistort(np.asarray(picture.values, np.float64), view), np.float64)
+    lux = np.asarray(undistort(np.asarray(picture.values, np.float64), view), np.float64)
+    # Where the lens saw nothing the photograph is black: any E0 > 0 keeps it so.
+    return np.where(np.isfinite(lux), lux, np.nanmean(lux, axis=(0, 1)))
 
 
 def _luminance_per_unit(scene: Scene, ambient: Ambient) -> float:

@@ -57,6 +57,13 @@ def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
     elif scene.surface.mesh is not None:
         model = _from_mesh(scene, next(iter(views.values())))
     else:
+        if scene.object:
+            raise InputError(
+                "needs a surface with a place, and normals alone have none",
+                file=scene.file,
+                field="object[0]",
+                remedy="give a depth or a mesh, or leave the object out",
+            )
         normals = {name: _read_normals(scene, view) for name, view in views.items()}
         model = SurfaceModel(normals=normals)
     return replace(model, objects=objects, casters=casters)
@@ -75,7 +82,6 @@ def _from_depth(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
     seen_by = view if table.focal_px is None else replace(view, fx=table.focal_px)
     depth = depth_from_raw(read_depth_array(path), seen_by, encoding, file=str(path))
     depth = undistort(depth, view, method="nearest")
-    ideal = view.undistorted()
     given = None if scene.surface.normals is None else _read_normals(scene, view)
     return surface_of_depth(
         depth,
@@ -108,9 +114,11 @@ def surface_of_depth(
     thickness_m : closes objects at their back for shadows.
     occluder_triangles : budget of the shadow geometry; 0 keeps all.
     """
+    is_whole = normals is None
     if normals is None:
         normals = normals_from_depth(depth, view, max_jump=max_jump)
-    real = triangulate_depth(depth, view, max_jump=max_jump)
+    lit = np.where(np.isfinite(normals).all(axis=-1), depth, np.nan)
+    real = triangulate_depth(lit, view, max_jump=max_jump, normals=normals)
     if len(real.triangles) == 0:
         raise InputError(
             "no three neighbouring pixels have a depth on one surface",
@@ -119,7 +127,7 @@ def surface_of_depth(
             remedy="check kind and scale_to_m",
         )
     closed = real
-    if thickness_m is not None:
+    if thickness_m is not None or not is_whole:
         closed = triangulate_depth(depth, view, max_jump=max_jump, thickness_m=thickness_m)
     occluder = decimated(closed, occluder_triangles, view.position)
     bias = max(DEPTH_BIAS_M, DECIMATION_MARGIN * occluder.error_m)

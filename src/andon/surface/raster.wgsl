@@ -16,8 +16,18 @@ struct Corner {
   @location(0) normal: vec3f,
   @location(1) uv: vec2f,
   @location(2) @interpolate(flat, first) material: vec4f,
-  @location(3) @interpolate(flat, first) flags: u32,
+  // Packed normal, reflectance and flags of the whole triangle.
+  @location(3) @interpolate(flat, first) packed: vec3u,
 };
+
+fn pack_reflectance(reflectance: vec3f) -> u32 {
+  return pack4x8unorm(vec4f(sqrt(clamp(reflectance, vec3f(0.0), vec3f(1.0))), 0.0));
+}
+
+// The octahedral map needs no unit vector.
+fn towards(normal: vec3f, sight: vec3f) -> u32 {
+  return octahedral_encode(select(normal, -normal, dot(normal, sight) > 0.0));
+}
 
 @vertex fn corner(
   @location(0) position: vec3f,
@@ -29,19 +39,24 @@ struct Corner {
   let image = (view.focal * p.xy + (view.centre - 0.5 * view.size) * p.z) * 2.0 / view.size;
   // Reversed infinite depth: near/z, so that float32 keeps its relative precision far away.
   let clip = vec4f(image.x, -image.y, view.near_m, p.z);
-  return Corner(clip, normal, uv, materials[material], draw_flags.x | (material << MATERIAL_SHIFT));
+  let look = materials[material];
+  let flags = draw_flags.x | (material << MATERIAL_SHIFT);
+  let sight = position - view.position;
+  return Corner(clip, normal, uv, look, vec3u(towards(normal, sight), pack_reflectance(look.xyz), flags));
+}
+
+// A triangle of one normal and one colour: all is known at its first corner.
+@fragment fn flat_surface(in: Corner) -> @location(0) vec4u {
+  return vec4u(bitcast<u32>(1.0 / in.clip.w), in.packed);
 }
 
 @fragment fn surface(in: Corner) -> @location(0) vec4u {
   let sight = world_direction(ray_planar(in.clip.xy));
-  // The octahedral map needs no unit vector.
-  let facing = select(in.normal, -in.normal, dot(in.normal, sight) > 0.0);
-  let reflectance = base_colour(in.material, in.uv);
   return vec4u(
     bitcast<u32>(1.0 / in.clip.w),
-    octahedral_encode(facing),
-    pack4x8unorm(vec4f(sqrt(clamp(reflectance, vec3f(0.0), vec3f(1.0))), 0.0)),
-    in.flags,
+    towards(in.normal, sight),
+    pack_reflectance(base_colour(in.material, in.uv)),
+    in.packed.z,
   );
 }
 

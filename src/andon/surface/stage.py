@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.gpu.device import Gpu
-from andon.gpu.bindings import BindGroup, bind_group
-from andon.gpu.passes import color_attachment, pipeline_layout, shader_module
-from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
-from andon.quantities import Geometry, Surface
-from andon.rays import face_normals
-from andon.spaces import View
-from andon.surface import reference
-from andon.surface.model import SurfaceModel
 from andon.gbuffer import (
     OBJECT,
     STRUCTS,
@@ -26,6 +18,15 @@ from andon.gbuffer import (
     projection_variant,
     unpack_surface,
 )
+from andon.gpu.bindings import BindGroup, bind_group
+from andon.gpu.device import Gpu
+from andon.gpu.passes import color_attachment, pipeline_layout, shader_module
+from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
+from andon.quantities import Geometry, Surface
+from andon.rays import face_normals
+from andon.spaces import View
+from andon.surface import reference
+from andon.surface.model import SurfaceModel
 from andon.surface.textures import TEXTURE_SIDE_PX
 
 __all__ = ["GpuSurface", "SurfaceStage"]
@@ -46,10 +47,17 @@ class GpuSurface:
     texture : (H, W) rgba32uint, see gbuffer.wgsl.
     view_buffer : one `VIEW_RECORD`.
     emitted_cd_m2 : (materials, 3), what the materials of virtual objects emit.
+    model : what is seen; says which pixels have a material and a position of their own.
     """
 
-    def __init__(self, gpu: Gpu, view: View, emitted_cd_m2: NDArray[np.float64]) -> None:
-        self.view = view
+    def __init__(
+        self,
+        gpu: Gpu,
+        view: View,
+        emitted_cd_m2: NDArray[np.float64],
+        model: SurfaceModel,
+    ) -> None:
+        self.view, self.model = view, model
         self.emitted_cd_m2 = emitted_cd_m2
         self.texture = make_texture(gpu, "rgba32uint", view.width, view.height, label="g-buffer")
         self.view_buffer = uniform_buffer(gpu, VIEW_RECORD.dtype.itemsize, "view")
@@ -58,12 +66,19 @@ class GpuSurface:
     def read(self) -> Surface:
         """The surface as arrays; precision of the packing: normals 6.5e-5 rad, depth float32."""
         fields = unpack_surface(self.texture.read(), self.view)
-        points = reference.from_depth(fields["depth"], fields["normal"], self.view)
+        is_object = fields["is_object"]
+        if self.model.is_distant_only:
+            normals = np.where(fields["valid"][..., None], fields["normal"], np.nan)
+            points = reference.from_normals(normals, self.view)
+        else:
+            points = reference.from_depth(fields["depth"], fields["normal"], self.view)
+        if self.view.name in self.model.depth or self.model.is_distant_only:
+            fields["material_id"] = np.where(is_object, fields["material_id"], -1)
         emitted = np.zeros_like(points.reflectance)
         # Numbers of materials are the objects' own; the real surface's emission is in the photo.
-        objects = fields["is_object"]
-        emitted[objects] = self.emitted_cd_m2[fields["material_id"][objects]]
-        return Surface(**{**vars(points), **fields, "emitted_cd_m2": emitted, "view": self.view})
+        emitted[is_object] = self.emitted_cd_m2[fields["material_id"][is_object]]
+        fields["normal"] = points.normal
+        return replace(points, **fields, emitted_cd_m2=emitted)
 
 
 class SurfaceStage:
@@ -77,7 +92,7 @@ class SurfaceStage:
         self.gpu, self.model, self.view = gpu, model, view
         objects = model.objects
         emitted = np.array([m.emissive_cd_m2 for m in objects.materials], float).reshape(-1, 3)
-        self.surface = GpuSurface(gpu, view, emitted)
+        self.surface = GpuSurface(gpu, view, emitted, model)
         on_host = view.projection != "pinhole"
         has_picture = view.name in model.depth or model.is_distant_only
         self._draws: list[_Draw] = []
@@ -90,7 +105,7 @@ class SurfaceStage:
             self._background = make_texture(gpu, "rgba32uint", view.width, view.height)
             self._background.write(pack_surface(real))
         self._make_pipelines()
-        if not has_picture:
+        if not has_picture and len(model.real.triangles):
             self._draws.append(_Draw(self, model.real, VALID))
         if len(objects.triangles):
             self._draws.append(_Draw(self, objects, VALID | OBJECT))
@@ -121,7 +136,10 @@ class SurfaceStage:
         table = gpu.device.create_buffer(size=16, usage=_storage_usage())
         background = self._background or make_texture(gpu, "rgba32uint", 1, 1)
         layout = self.bind(flags, table, empty, background)
-        self.pipeline = self._pipeline(layout, module, "corner", "surface", buffers, "greater")
+        self.pipelines = {
+            entry: self._pipeline(layout, module, "corner", entry, buffers, "greater")
+            for entry in ("surface", "flat_surface")
+        }
         self._fill: Any = None
         if self._background is not None:
             self._fill = self._pipeline(layout, module, "fullscreen", "background", [], "always")
@@ -185,8 +203,8 @@ class SurfaceStage:
             render.set_pipeline(self._fill)
             render.set_bind_group(0, self._fill_group.group)
             render.draw(3)
-        render.set_pipeline(self.pipeline)
         for draw in self._draws:
+            render.set_pipeline(self.pipelines[draw.entry_point])
             draw.encode(render)
         render.end()
         return self.surface
@@ -201,6 +219,7 @@ class _Draw:
         gpu = stage.gpu
         vertices, indices = vertex_arrays(geometry)
         self.count = indices.size
+        self.entry_point = "flat_surface" if is_flat(geometry) else "surface"
         device, usage = gpu.device, wgpu.BufferUsage
         self.vertices = device.create_buffer_with_data(data=vertices, usage=usage.VERTEX)
         self.indices = device.create_buffer_with_data(data=indices, usage=usage.INDEX)
@@ -222,6 +241,16 @@ def _storage_usage() -> int:
     import wgpu
 
     return wgpu.BufferUsage.STORAGE
+
+
+def is_flat(geometry: Geometry, /) -> bool:
+    """Every triangle has one normal and one colour."""
+    if geometry.uvs is not None and any(m.texture is not None for m in geometry.materials):
+        return False
+    if geometry.normals is None:
+        return True
+    corners = geometry.normals[geometry.triangles]
+    return bool((corners == corners[:, :1]).all())
 
 
 def vertex_arrays(geometry: Geometry, /) -> tuple[NDArray[Any], NDArray[np.uint32]]:

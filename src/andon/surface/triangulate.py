@@ -14,7 +14,13 @@ Float = NDArray[np.float64]
 
 
 def triangulate_depth(
-    depth: Float, view: View, /, *, max_jump: float = 0.05, thickness_m: float | None = None
+    depth: Float,
+    view: View,
+    /,
+    *,
+    max_jump: float = 0.05,
+    thickness_m: float | None = None,
+    normals: Float | None = None,
 ) -> Geometry:
     """Geometry in the world from depth (H, W): two triangles per 2×2 pixels, none across a jump.
 
@@ -28,6 +34,8 @@ def triangulate_depth(
     ----------
     thickness_m : if given, the sheet is doubled that far behind itself along the rays and its
         rims are closed, so that light from behind does not slip through cuts.
+    normals : (H, W, 3) unit, world, finite where depth is: kept at the corners of a sheet, so
+        that another eye sees the same slopes; without them triangles are flat.
     """
     height, width = depth.shape
     index = np.arange(height * width, dtype=np.int64).reshape(height, width)
@@ -43,10 +51,12 @@ def triangulate_depth(
     rays = view.rays_planar().reshape(-1, 3)[used]
     points = rays * depth.ravel()[used, None]
     triangles = triangles.reshape(-1, 3)
+    corner_normals = None if normals is None else normals.reshape(-1, 3)[used]
     if thickness_m:
         points, triangles = _thicken(points, triangles, rays, thickness_m)
+        corner_normals = None
     world = transform_points(view.world_from_camera, points)
-    return Geometry(world, triangles.astype(np.int32))
+    return Geometry(world, triangles.astype(np.int32), corner_normals)
 
 
 def _thicken(

@@ -16,7 +16,7 @@ from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
 from andon.transport.direct.records import FACE_RECORD, STRUCTS
 from andon.transport.direct.shadows.culling import face_triangles
 
-__all__ = ["FaceMaps", "triangle_planes"]
+__all__ = ["FaceMaps", "TrianglePlanes"]
 
 FOLDER = "andon/transport/direct/shadows"
 
@@ -54,6 +54,7 @@ class FaceMaps:
     ) -> None:
         self.gpu, self.discs, self.near_m = gpu, discs, near_m
         self.positions, self.triangles = positions, triangles
+        self._planes = TrianglePlanes(positions, triangles)
         self.face = map_size // 2
         size = (3 * self.face, 2 * self.face)
         self.depth = make_texture(gpu, "depth32float", *size, label="faces: depth")
@@ -139,9 +140,9 @@ class FaceMaps:
             corner = (face % 3 * self.face, face // 3 * self.face, self.face, self.face)
             render.set_viewport(*corner, 0, 1)
             render.set_scissor_rect(*corner)
-            if triangles.size:
-                render.draw(triangles.size, 1, start, face)
-            start += triangles.size
+            if len(triangles):
+                render.draw(3 * len(triangles), 1, start, face)
+            start += 3 * len(triangles)
         render.end()
         self._resampling.encode(encoder, self.discs[layer : layer + 2], [slot.resampling])
 
@@ -151,24 +152,27 @@ class FaceMaps:
         record = FACE_RECORD.pack(position=position, near_m=self.near_m)
         write_buffer(self.gpu, slot.lamp, record)
         if len(seen):
-            write_buffer(self.gpu, slot.corners, seen)
-            planes = triangle_planes(self.positions, seen, position)
-            write_buffer(self.gpu, slot.planes, planes)
+            write_buffer(self.gpu, slot.corners, self.triangles[seen])
+            write_buffer(self.gpu, slot.planes, self._planes.seen_from(position)[seen])
 
 
-def triangle_planes(
-    positions: NDArray[np.float32], triangles: NDArray[np.int32], lamp: NDArray[np.float64], /
-) -> NDArray[np.float32]:
-    """(k, 4): q in xyz with q·(P − lamp) = 1 for the points P of each triangle's plane.
+class TrianglePlanes:
+    """Planes of triangles as any lamp has them; normals are made once."""
 
-    q = n/(n·(a − lamp)); along a unit direction d the plane is 1/(q·d) away. Large where the lamp
-    lies in the plane, which then is seen edge-on.
-    """
-    a, b, c = (positions[triangles[:, i]] for i in range(3))
-    normal = np.cross((b - a).astype(np.float64), (c - a).astype(np.float64))
-    distance = np.einsum("ij,ij->i", normal, a - lamp)
-    tiny = 1e-12 * np.linalg.norm(normal, axis=1) + 1e-300
-    distance = np.where(np.abs(distance) < tiny, tiny, distance)
-    planes = np.zeros((len(triangles), 4), np.float32)
-    planes[:, :3] = np.clip(normal / distance[:, None], -1e30, 1e30)
-    return planes
+    def __init__(self, positions: NDArray[np.float32], triangles: NDArray[np.int32]) -> None:
+        a, b, c = (positions[triangles[:, i]].astype(np.float64) for i in range(3))
+        self._normal = np.cross(b - a, c - a)
+        self._offset = np.einsum("ij,ij->i", self._normal, a)
+        self._tiny = 1e-12 * np.linalg.norm(self._normal, axis=1) + 1e-300
+
+    def seen_from(self, lamp: NDArray[np.float64], /) -> NDArray[np.float32]:
+        """(m, 4): q in xyz with q·(P − lamp) = 1 for the points P of each triangle's plane.
+
+        q = n/(n·(a − lamp)); along a unit direction d the plane is 1/(q·d) away. Large where the
+        lamp lies in the plane, which then is seen edge-on.
+        """
+        distance = self._offset - self._normal @ lamp
+        distance = np.where(np.abs(distance) < self._tiny, self._tiny, distance)
+        planes = np.zeros((len(distance), 4), np.float32)
+        np.clip(self._normal / distance[:, None], -1e30, 1e30, out=planes[:, :3], casting="same_kind")
+        return planes

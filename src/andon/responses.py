@@ -68,6 +68,7 @@ class Response:
             self._check_curve()
 
     def _check_curve(self) -> None:
+        rows: list[int] = []
         for name, table in (("linear", self.linear), ("encoded", self.encoded)):
             if table is None or table.ndim != 2 or table.shape[1] != 3 or len(table) < 2:
                 shape = None if table is None else table.shape
@@ -76,6 +77,12 @@ class Response:
                 )
             if not np.isfinite(table).all() or (np.diff(table, axis=0) <= 0).any():
                 raise InputError("must be finite and strictly increasing", field=f"response.{name}")
+            rows.append(len(table))
+        if rows[0] != rows[1]:
+            raise InputError(
+                f"must have as many rows as response.linear, {rows[0]}, got {rows[1]}",
+                field="response.encoded",
+            )
 
     def decode(self, encoded: Float, /) -> Float:
         """g⁻¹: linear light (..., 3) from encoded values (..., 3) in [0, 1]."""

@@ -220,7 +220,7 @@ class View:
         """(H, W) solid angle of each pixel in sr.
 
         Exact for latlong (rows are zones of the sphere); the value at the centre times the area
-        for the others (relative error below (pixel angle)²/6).
+        for the others (relative error at most (pixel angle)²/4, at the centre of a pinhole view).
         """
         if self.projection == "latlong":
             edges = np.sin(np.pi / 2 - np.arange(self.height + 1) / self.height * np.pi)
@@ -233,7 +233,10 @@ class View:
         return self.directions()[..., 2] ** 3 / (self.fx * self.fy)
 
     def project(self, points_camera: NDArray[Any], /) -> Float:
-        """Pixel coordinates (..., 2) of camera-frame points (..., 3); NaN behind a pinhole."""
+        """Pixel coordinates (..., 2) of camera-frame points (..., 3).
+
+        NaN behind a pinhole, and straight behind a fisheye, where every azimuth is as good.
+        """
         x, y, z = np.moveaxis(np.asarray(points_camera, np.float64), -1, 0)
         if self.projection == "latlong":
             azimuth = np.arctan2(x, z)
@@ -248,7 +251,8 @@ class View:
         if self.projection == "fisheye":
             planar = np.hypot(x, y)
             with np.errstate(invalid="ignore", divide="ignore"):
-                scale = np.where(planar > 0, np.arctan2(planar, z) / planar, 1 / np.abs(z))
+                on_axis = np.where(z > 0, 1 / z, np.nan)
+                scale = np.where(planar > 0, np.arctan2(planar, z) / planar, on_axis)
         else:
             with np.errstate(invalid="ignore", divide="ignore"):
                 scale = np.where(z > 0, 1 / z, np.nan)

@@ -23,7 +23,7 @@ class DepthEncoding:
     Attributes
     ----------
     kind : ``z`` (planar depth), ``distance`` (ray length) or ``disparity`` (pixels).
-    scale_to_m : metres per unit, for z and distance (0.001 for millimetres).
+    scale_to_m : metres per unit (0.001 for millimetres); for disparity: pixels per unit.
     baseline_m, doffs_px : stereo baseline and principal-point offset, for disparity:
         z = baseline·fx/(disparity + doffs).
     invalid : numbers that mean "no measurement", besides NaN, ±inf and what is not positive.
@@ -72,7 +72,7 @@ def _metres(raw: Float, view: View, encoding: DepthEncoding, file: str) -> Float
                 field="surface.depth.baseline_m",
             )
         with np.errstate(divide="ignore", invalid="ignore"):
-            shifted = raw + encoding.doffs_px
+            shifted = raw * encoding.scale_to_m + encoding.doffs_px
             return np.where(shifted > 0, encoding.baseline_m * view.fx / shifted, np.nan)
     depth = raw * encoding.scale_to_m
     if encoding.kind == "distance" and view.projection == "pinhole":

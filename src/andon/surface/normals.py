@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,7 @@ from andon.spaces import View, rotate
 __all__ = ["normals_from_depth"]
 
 Float = NDArray[np.float64]
+Window = tuple[slice, slice]
 
 RADIUS_PX = 3
 # Spatial weight: σ = half the radius, so that the middle of the window's rim counts 0.14.
@@ -25,10 +28,10 @@ PRIOR = 1e-6
 def normals_from_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -> Float:
     """Unit normals (H, W, 3) in the world, turned to the camera; NaN in holes.
 
-    Over a plane with normal n, 1/depth = q·ray with q ∝ n, which for a pinhole is affine in the
-    pixel. An affine function is fitted to 1/depth in a 7×7 window, weighted by distance; pixels
-    across a jump do not count; a second pass takes weight from those off the first plane, so that
-    creases stay sharp and noise is averaged.
+    Over a plane with normal n, 1/depth = q·ray with q ∝ n, which is affine in the place where the
+    ray meets an image plane. An affine function is fitted to 1/depth in a 7×7 window, weighted by
+    distance; pixels across a jump do not count; a second pass takes weight from those off the
+    first plane, so that creases stay sharp and noise is averaged.
 
     Parameters
     ----------
@@ -37,17 +40,67 @@ def normals_from_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         inverse = np.where(depth > 0, 1 / depth, 0.0)
-    affine = _fit(inverse, max_jump, None)
-    affine = _fit(inverse, max_jump, affine)
-    plane = _plane_from_affine(affine, view)
+    image = _Pixels(view) if view.projection == "pinhole" else _TangentPlanes(view)
+    affine = _fit(inverse, max_jump, None, image)
+    affine = _fit(inverse, max_jump, affine, image)
+    plane = image.plane(affine)
+    plane *= np.sign(np.einsum("...i,...i->...", plane, view.rays_planar()))[..., None]
     with np.errstate(invalid="ignore", divide="ignore"):
         normals = -plane / np.linalg.norm(plane, axis=-1, keepdims=True)
     normals[~np.isfinite(depth)] = np.nan
     return rotate(view.world_from_camera, normals)
 
 
-def _fit(inverse: Float, max_jump: float, previous: Float | None) -> Float:
-    """(H, W, 3): value and slopes per column and row of 1/depth around each pixel."""
+class _Pixels:
+    """The image plane of a pinhole: places are pixels, the same for all."""
+
+    def __init__(self, view: View) -> None:
+        self.view = view
+
+    def place(self, centre: Window, other: Window, dx: int, dy: int) -> tuple[Any, Any, Any]:
+        """Offset of `other` from `centre`, and what 1/depth is divided by to be affine in it."""
+        return dx, dy, 1.0
+
+    def plane(self, affine: Float) -> Float:
+        """q (H, W, 3) in the camera frame, from value and slopes of q·ray."""
+        view = self.view
+        rays = view.rays_planar()
+        x, y = affine[..., 1] * view.fx, affine[..., 2] * view.fy
+        return np.stack([x, y, affine[..., 0] - x * rays[..., 0] - y * rays[..., 1]], axis=-1)
+
+
+class _TangentPlanes:
+    """Fisheye and latlong: each pixel has its own image plane, where the sphere is touched by it.
+
+    Over a plane, q·ray is affine in the pixel only for a pinhole; in these it is everywhere.
+    """
+
+    def __init__(self, view: View) -> None:
+        self.rays = view.directions()
+        # Any two directions across the ray, in units of a pixel's angle as pinhole's are pixels.
+        aside = np.where(np.abs(self.rays[..., 1:2]) < 0.9, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
+        right = np.cross(self.rays, aside)
+        right /= np.linalg.norm(right, axis=-1, keepdims=True)
+        per_pixel = 1 / np.sqrt(np.maximum(view.solid_angles(), 1e-12))[..., None]
+        self.right, self.down = right * per_pixel, np.cross(self.rays, right) * per_pixel
+
+    def place(self, centre: Window, other: Window, dx: int, dy: int) -> tuple[Any, Any, Any]:
+        """Offset of `other` from `centre`, and what 1/depth is divided by to be affine in it."""
+        ray = self.rays[other]
+        along = np.maximum(np.einsum("...i,...i->...", ray, self.rays[centre]), 1e-3)
+        u = np.einsum("...i,...i->...", ray, self.right[centre]) / along
+        return u, np.einsum("...i,...i->...", ray, self.down[centre]) / along, along
+
+    def plane(self, affine: Float) -> Float:
+        """q (H, W, 3) in the camera frame, from value and slopes of q·ray."""
+        value, u, v = (affine[..., i, None] for i in range(3))
+        return value * self.rays + u * self.right + v * self.down
+
+
+def _fit(
+    inverse: Float, max_jump: float, previous: Float | None, image: _Pixels | _TangentPlanes
+) -> Float:
+    """(H, W, 3): value and slopes of 1/depth around each pixel, in the places of `image`."""
     height, width = inverse.shape
     sums = np.zeros((9, height, width))
     offsets = range(-RADIUS_PX, RADIUS_PX + 1)
@@ -58,19 +111,23 @@ def _fit(inverse: Float, max_jump: float, previous: Float | None) -> Float:
             c, o = inverse[centre], inverse[other]
             near = np.abs(o - c) <= max_jump * np.maximum(o, c)
             weight = np.exp(-(dx * dx + dy * dy) / (2 * SIGMA_PX**2)) * (near & (c > 0) & (o > 0))
+            u, v, along = image.place(centre, other, dx, dy)
+            value = o / along
             if previous is not None:
-                value, slope_x, slope_y = np.moveaxis(previous[centre], -1, 0)
-                predicted = value + slope_x * dx + slope_y * dy
-                residual = (predicted - o) / (RESIDUAL * np.maximum(c, 1e-12))
+                at, slope_u, slope_v = np.moveaxis(previous[centre], -1, 0)
+                residual = (at + slope_u * u + slope_v * v - value) / (
+                    RESIDUAL * np.maximum(c, 1e-12)
+                )
                 weight = weight * np.exp(-0.5 * np.minimum(residual**2, 60.0))
-            terms = (1, dx, dy, dx * dx, dx * dy, dy * dy)
-            for index, term in enumerate(terms):
-                if term:
-                    sums[(index, *centre)] += term * weight
-            for index, term in enumerate((1, dx, dy)):
-                if term:
-                    sums[(6 + index, *centre)] += term * weight * o
+            _add(sums, centre, weight, (1, u, v, u * u, u * v, v * v))
+            _add(sums[6:], centre, weight * value, (1, u, v))
     return _solve(sums)
+
+
+def _add(sums: Float, centre: Window, weight: Float, terms: tuple[Any, ...]) -> None:
+    for index, term in enumerate(terms):
+        if np.any(term):
+            sums[(index, *centre)] += term * weight
 
 
 def _overlap(size: int, shift: int) -> tuple[slice, slice]:
@@ -89,18 +146,3 @@ def _solve(sums: Float) -> Float:
     slope_x = (xt * yy - yt * xy) / determinant
     slope_y = (yt * xx - xt * xy) / determinant
     return np.nan_to_num(np.stack([mt - slope_x * mx - slope_y * my, slope_x, slope_y], axis=-1))
-
-
-def _plane_from_affine(affine: Float, view: View) -> Float:
-    """q (H, W, 3) in the camera frame with q·ray = value and q·∂ray = slopes."""
-    rays = view.rays_planar()
-    along_x = np.gradient(rays, axis=1) if view.width > 1 else np.zeros_like(rays)
-    along_y = np.gradient(rays, axis=0) if view.height > 1 else np.zeros_like(rays)
-    # Cramer's rule: the rows are ray, ∂ray/∂column, ∂ray/∂row; the common determinant only scales
-    # q, and its sign is that of 1/depth = q·ray > 0.
-    q = (
-        affine[..., :1] * np.cross(along_x, along_y)
-        + affine[..., 1:2] * np.cross(along_y, rays)
-        + affine[..., 2:] * np.cross(rays, along_x)
-    )
-    return q * np.sign(np.einsum("...i,...i->...", q, rays))[..., None]

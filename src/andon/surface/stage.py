@@ -56,7 +56,7 @@ class GpuSurface:
         write_buffer(gpu, self.view_buffer, pack_view(view))
 
     def read(self) -> Surface:
-        """The surface as arrays; precision of the packing: normals 3e-5 rad, depth float32."""
+        """The surface as arrays; precision of the packing: normals 6.5e-5 rad, depth float32."""
         fields = unpack_surface(self.texture.read(), self.view)
         points = reference.from_depth(fields["depth"], fields["normal"], self.view)
         emitted = np.zeros_like(points.reflectance)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps import PointLamp
+from andon.rays import RayScene
 
 __all__ = ["EDGE_TEXELS", "shadow_edges"]
 
@@ -15,17 +16,32 @@ Float = NDArray[np.float64]
 Visible = Callable[[Float, Float, Float], NDArray[np.bool_]]
 
 EDGE_TEXELS = 2.0
+# A body ends where the lamp looks past it by this ratio of distances.
+PAST = 1.02
 
 
 def shadow_edges(
-    points: Float, normals: Float, lamp: PointLamp, visible: Visible, map_size: int, /, *, steps: int
+    points: Float,
+    normals: Float,
+    lamp: PointLamp,
+    visible: Visible,
+    casters: RayScene,
+    map_size: int,
+    /,
+    *,
+    steps: int,
 ) -> NDArray[np.bool_]:
-    """(n,) bool: on the receiver's plane, the true shadow changes within two texels of the map.
+    """(n,) bool: within two texels of the map, an edge as the lamp sees it.
+
+    Either the true shadow changes on the receiver's plane, or the body itself ends there: the lamp
+    looks past it at something that is farther by more than `PAST`. Depth jumps in both cases, and
+    only there may a depth map be wrong.
 
     Parameters
     ----------
     points, normals : (n, 3) metres and unit normals.
     visible : (points, normals, lamp position) → (n,) bool, by rays.
+    casters : what the lamp sees.
     map_size : texels along a side of one disc of the dual-paraboloid map.
     steps : the ±2 texels are probed by a square grid of this many points a side.
     """
@@ -35,6 +51,7 @@ def shadow_edges(
     place = reach[:, :2] / (distance + np.abs(reach[:, 2]))[:, None]
     away = np.einsum("ij,ij->i", reach, normals)
     lit = np.zeros(len(points), np.int64)
+    past = np.zeros(len(points), bool)
     offsets = np.linspace(-EDGE_TEXELS, EDGE_TEXELS, steps) * 2 / map_size
     for dx in offsets:
         for dy in offsets:
@@ -46,4 +63,6 @@ def shadow_edges(
             usable = (along > 0) & np.isfinite(along)
             moved = np.where(usable[:, None], lamp.position_m + ray * along[:, None], points)
             lit += visible(moved, normals, lamp.position_m)
-    return (lit > 0) & (lit < steps**2)
+            lamp_at = np.broadcast_to(lamp.position_m, ray.shape)
+            past |= casters.first_hits(lamp_at, ray).distance > PAST * np.where(usable, along, 0)
+    return past | ((lit > 0) & (lit < steps**2))

@@ -172,7 +172,7 @@ def _paraboloids() -> tuple[float, float, float]:
     from andon.verify.setting import prepared_of, room, room_lamps
     from andon.verify.truths.embree import Visibility
 
-    visibility = Visibility(room())
+    visibility, casters = Visibility(room()), RayScene(room())
     view = camera_in(room(), 1280, 720)
     differing = facing = far = seam = 0
     shadow = Shadow(SHADOW_MAP_SIZE, SHADOW_FILTER)
@@ -189,10 +189,15 @@ def _paraboloids() -> tuple[float, float, float]:
         wrong = counted & (ours != truth)
         differing += int(wrong.sum())
         facing += int(counted.sum())
-        edge = shadow_edges(
-            points[wrong], normals[wrong], lamp, visibility.visible, SHADOW_MAP_SIZE, steps=9
+        away = ~shadow_edges(
+            points[wrong],
+            normals[wrong],
+            lamp,
+            visibility.visible,
+            casters,
+            SHADOW_MAP_SIZE,
+            steps=9,
         )
-        away = ~edge
         far += int(away.sum())
         seam += int((away & _on_seam(points[wrong] - lamp.position_m)).sum())
     return differing / facing * 100, float(far), float(seam)
@@ -247,7 +252,7 @@ def _parity() -> tuple[float, float, float, float]:
         assert isinstance(lamp, PointLamp)
         assert lamp.shadow is not None
         size = lamp.shadow.map_size
-        edges[mask] |= shadow_edges(points, normals, lamp, visible, size, steps=5)
+        edges[mask] |= shadow_edges(points, normals, lamp, visible, casters, size, steps=9)
     # An object's outline is drawn by two rasterisers: they may choose either side of it.
     edges |= _near(surface.is_object, 1)
     kept = ~edges

@@ -11,7 +11,7 @@ const FAR: f32 = 1e30;
 const EDGE_ON: f32 = 1e-6;
 
 // Planes within this ratio of each other, half a texel from where they are seen, are neighbours.
-const SAME_SURFACE: f32 = 1.02;
+const SAME_SURFACE: f32 = 1.05;
 
 fn plane_distance(texel: vec2i, direction: vec3f) -> f32 {
   let inverse = dot(textureLoad(faces, texel, 0).xyz, direction);

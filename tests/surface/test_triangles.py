@@ -1,0 +1,201 @@
+"""A depth image as triangles, and fewer of them."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from andon.quantities import Geometry
+from andon.rays import face_normals
+from andon.spaces import View, look_at
+from andon.surface.occluder import decimated, merged
+from andon.surface.triangulate import triangulate_depth
+from comparison import assert_agree
+from worlds import sphere_depth, unit
+
+POSE = look_at(np.array([1.0, 2, 3]), np.array([0.5, 0, 0]))
+PINHOLE = View("pinhole", 40, 30, 35.0, 36.0, 19.0, 15.0, world_from_camera=POSE)
+FISHEYE = View("fisheye", 40, 30, 20.0, 20.0, 19.0, 15.0, world_from_camera=POSE)
+
+
+def areas(geometry):
+    a, b, c = np.moveaxis(geometry.positions[geometry.triangles], 1, 0)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def test_area_of_a_plane():
+    """A tilted plane: the quadrilateral between its four corners, exactly."""
+    normal = unit([0.3, -0.2, -1])
+    depth = -2 / (PINHOLE.rays_planar() @ normal)
+    geometry = triangulate_depth(depth, PINHOLE)
+    assert len(geometry.triangles) == 2 * 39 * 29
+    a, b, c, d = (PINHOLE.rays_planar() * depth[..., None])[[0, 0, -1, -1], [0, -1, -1, 0]]
+    expected = (
+        np.linalg.norm(np.cross(b - a, c - a)) / 2 + np.linalg.norm(np.cross(c - a, d - a)) / 2
+    )
+    assert areas(geometry).sum() == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("view", [PINHOLE, FISHEYE], ids=["pinhole", "fisheye"])
+def test_triangles_face_the_camera(view):
+    depth = sphere_depth(view, (0, 0, 2.0), 0.9)[0]
+    geometry = triangulate_depth(depth, view, max_jump=0.3)
+    middle = geometry.positions[geometry.triangles].mean(axis=1)
+    facing = np.einsum("ij,ij->i", face_normals(geometry), view.position - middle)
+    assert (facing > 0).all()
+    assert_agree(
+        np.linalg.norm(geometry.positions - view.world_from_camera[:3] @ (0, 0, 2.0, 1), axis=1),
+        np.full(len(geometry.positions), 0.9),
+        rtol=1e-9,
+    )
+
+
+def test_no_triangle_crosses_a_jump_or_touches_a_hole():
+    depth = np.full(PINHOLE.shape, 2.0)
+    depth[:, 20:] = 2.0 * 1.06
+    depth[5, 7] = np.nan
+    geometry = triangulate_depth(depth, PINHOLE)
+    camera = geometry.positions @ np.linalg.inv(POSE)[:3, :3].T + np.linalg.inv(POSE)[:3, 3]
+    z = camera[geometry.triangles][..., 2]
+    assert np.ptp(z, axis=1).max() < 1e-9
+    # One column of cells fell to the jump. A hole is the corner of 4 cells: 6 of the 8 triangles.
+    assert len(geometry.triangles) == 2 * 38 * 29 - 6
+    assert len(triangulate_depth(depth, PINHOLE, max_jump=0.07).triangles) == 2 * 39 * 29 - 6
+
+
+def directed_edges(geometry):
+    t = geometry.triangles
+    return Counter(map(tuple, np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]]).tolist()))
+
+
+def volume(geometry):
+    a, b, c = np.moveaxis(geometry.positions[geometry.triangles], 1, 0)
+    return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+
+
+def test_thickness_closes_the_sheet():
+    depth = np.full(PINHOLE.shape, 2.0)
+    geometry = triangulate_depth(depth, PINHOLE, thickness_m=0.1)
+    edges = directed_edges(geometry)
+    assert set(edges.values()) == {1}
+    assert all(edges[b, a] == 1 for a, b in edges)
+    flat = areas(triangulate_depth(depth, PINHOLE)).sum()
+    # Along the rays the sheet grows: between 0.1·cos(35°) and 0.1 thick, and wider behind.
+    assert 0.085 * flat < volume(geometry) < 0.11 * flat
+
+
+@given(st.integers(0, 2**32 - 1), st.floats(0.05, 0.6))
+@settings(max_examples=40, deadline=None)
+def test_thickness_closes_whatever_holes_left(seed, share):
+    """Every edge is walked as often one way as the other, also where pieces touch in a point."""
+    view = PINHOLE.resized(9, 7)
+    generator = np.random.default_rng(seed)
+    depth = np.where(generator.random(view.shape) < share, np.nan, 2.0)
+    depth = depth * (1 + 0.1 * (generator.random(view.shape) < 0.3))
+    geometry = triangulate_depth(depth, view, thickness_m=0.2)
+    edges = directed_edges(geometry)
+    assert all(edges[b, a] == count for (a, b), count in edges.items())
+    if len(geometry.triangles):
+        assert volume(geometry) > 0
+
+
+@pytest.mark.parametrize("depth", [np.nan, 2.0])
+def test_pictures_too_small_for_a_triangle(depth):
+    for shape in ((1, 1), (1, 5), (5, 1)):
+        view = View("pinhole", shape[1], shape[0], 3.0, 3.0)
+        geometry = triangulate_depth(np.full(shape, depth), view, thickness_m=0.1)
+        assert geometry.triangles.shape == (0, 3)
+
+
+# ── decimation ────────────────────────────────────────────────────────────────────────────────
+
+
+def bumpy():
+    view = PINHOLE.resized(120, 90)
+    x, y = np.moveaxis(view.rays_planar()[..., :2], -1, 0)
+    depth = 2 + 0.15 * np.sin(7 * x) * np.cos(6 * y)
+    return triangulate_depth(depth, view), view
+
+
+def plain_distance(geometry, origin, direction):
+    """Nearest hit of one ray, by Cramer's rule on all triangles in float64."""
+    a, b, c = np.moveaxis(geometry.positions[geometry.triangles], 1, 0)
+    p = np.cross(direction, c - a)
+    determinant = np.einsum("ij,ij->i", b - a, p)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u = np.einsum("ij,ij->i", origin - a, p) / determinant
+        q = np.cross(origin - a, b - a)
+        v = q @ direction / determinant
+        t = np.einsum("ij,ij->i", c - a, q) / determinant
+    return t[(u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)].min(initial=np.inf)
+
+
+@pytest.mark.parametrize("budget", [200, 1000, 5000])
+def test_decimation_keeps_its_budget_and_says_what_it_cost(budget):
+    geometry, view = bumpy()
+    occluder = decimated(geometry, budget, view.position)
+    assert budget / 2 < len(occluder.geometry.triangles) <= budget
+    assert occluder.triangles_before == len(geometry.triangles) == 2 * 119 * 89
+    # Measured again, at other points than it measures itself: the middles of triangles.
+    chosen = np.random.default_rng(0).choice(len(geometry.triangles), 400, replace=False)
+    points = geometry.positions[geometry.triangles[chosen]].mean(axis=1)
+    away = np.linalg.norm(points - view.position, axis=1)
+    found = np.array(
+        [plain_distance(occluder.geometry, view.position, (p - view.position) / d)
+         for p, d in zip(points, away, strict=True)]
+    )  # fmt: skip
+    assert np.isfinite(found).mean() > 0.95
+    error = np.abs(found - away)[np.isfinite(found)]
+    assert np.percentile(error, 95) == pytest.approx(occluder.error_m, rel=0.25, abs=2e-6)
+
+
+def test_more_triangles_err_less():
+    geometry, view = bumpy()
+    errors = [decimated(geometry, budget, view.position).error_m for budget in (200, 1000, 5000)]
+    assert errors[0] > 2 * errors[1] > 4 * errors[2] > 0
+
+
+def test_what_decimation_lost_is_counted():
+    """Thousands of specks: most vanish, and no error in metres can say so."""
+    generator = np.random.default_rng(0)
+    specks = [
+        Geometry(
+            generator.uniform(-0.5, 0.5, 3) * (1, 1, 0) + generator.normal(size=(3, 3)) * 0.004,
+            np.array([[0, 1, 2]], np.int32),
+        )
+        for _ in range(3000)
+    ]
+    geometry = merged(*specks)
+    occluder = decimated(geometry, 300, PINHOLE.position)
+    middles = geometry.positions[geometry.triangles].mean(axis=1)[::10]
+    hits = [
+        plain_distance(occluder.geometry, PINHOLE.position, unit(p - PINHOLE.position))
+        for p in middles
+    ]
+    lost = float(np.mean(~np.isfinite(hits)))
+    assert lost > 0.5
+    assert occluder.lost_share == pytest.approx(lost, abs=0.05)
+
+
+def test_a_sheet_loses_nothing():
+    geometry, view = bumpy()
+    assert decimated(geometry, 5000, view.position).lost_share < 0.002
+    assert decimated(geometry, 0, view.position).lost_share == 0
+
+
+def test_few_triangles_or_no_budget_are_left_as_they_are():
+    geometry, view = bumpy()
+    for budget in (0, 10**6):
+        occluder = decimated(geometry, budget, view.position)
+        assert occluder.geometry is geometry
+        assert occluder.error_m == 0
+
+
+def test_merging_moves_indices():
+    a, _ = bumpy()
+    both = merged(a, a)
+    assert len(both.triangles) == 2 * len(a.triangles)
+    assert both.triangles.max() == 2 * len(a.positions) - 1
+    assert_agree(both.positions[both.triangles[-1]], a.positions[a.triangles[-1]])

@@ -15,6 +15,8 @@ __all__ = ["EDGE_TEXELS", "shadow_edges"]
 Float = NDArray[np.float64]
 Visible = Callable[[Float, Float, Float], NDArray[np.bool_]]
 
+# Texels of the middle of the map, 4/map_size rad, where they are widest: the map is filled from
+# faces whose texels are that wide in all directions.
 EDGE_TEXELS = 2.0
 # A body ends where the lamp looks past it by this ratio of distances.
 PAST = 1.02
@@ -52,10 +54,12 @@ def shadow_edges(
     away = np.einsum("ij,ij->i", reach, normals)
     lit = np.zeros(len(points), np.int64)
     past = np.zeros(len(points), bool)
+    # |∂direction/∂u| = 2/(1 + |u|²): equal angles are larger steps in u towards the rim.
+    stretch = 1 + (place**2).sum(axis=1, keepdims=True)
     offsets = np.linspace(-EDGE_TEXELS, EDGE_TEXELS, steps) * 2 / map_size
     for dx in offsets:
         for dy in offsets:
-            u = place + np.array([dx, dy])
+            u = place + np.array([dx, dy]) * stretch
             square = (u**2).sum(axis=1, keepdims=True)
             ray = np.concatenate([2 * u, side[:, None] * (1 - square)], axis=1) / (1 + square)
             with np.errstate(divide="ignore", invalid="ignore"):

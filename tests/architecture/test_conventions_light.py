@@ -167,6 +167,8 @@ def test_dimming_is_linear():
     none = np.zeros(linear.shape)
     ambient = Ambient(np.full(3, 100.0), (0.5, 0.25, 1.0))
     close(relit_linear(frame, ambient, none), linear * [0.5, 0.25, 1.0], rtol=1e-6)
+    # It dims E0 and not ΔE.
+    close(relit_linear(frame, ambient, none + 100), linear * [1.5, 1.25, 2.0], rtol=1e-6)
     paper = relit_linear(frame, replace(ambient, dimming_mode="paper"), none)
     close(SRGB.encode(paper), grey() / 255 * [0.5, 0.25, 1.0], rtol=1e-5)
 

@@ -8,7 +8,8 @@ import pytest
 from andon.gpu import wgsl
 from andon.gpu.layout import HostStruct
 from andon.gpu.passes import shader_module
-from andon.transport.direct.stage import sum_of_lamps
+from andon.surface.stage import PLAIN, TEXTURED
+from andon.transport.direct.stage import FILTER, SUM, sum_of_lamps
 
 from .tree import modules
 
@@ -20,13 +21,12 @@ TEXTS = {path: wgsl._read(path) for path in MODULES}
 PROGRAMS = [path for path in MODULES if ENTRY_POINT.search(TEXTS[path])]
 
 PROJECTION = "andon/gbuffer/projections/{}.wgsl"
-FILTER = "andon/transport/direct/shadows/filter_{}.wgsl"
-SUM = "andon/transport/direct/sum.wgsl"
 VARIANTS = {
     "as written": {},
     "fisheye": {PROJECTION.format("pinhole"): PROJECTION.format("fisheye")},
     "latlong": {PROJECTION.format("pinhole"): PROJECTION.format("latlong")},
     "linear filter": {FILTER.format("none"): FILTER.format("linear")},
+    "textures": {PLAIN: TEXTURED},
     "one lamp of each kind": {SUM: sum_of_lamps([1, 1, 1, 1, 1])},
     "no lamps": {SUM: sum_of_lamps([0, 0, 0, 0, 0])},
 }

@@ -38,6 +38,10 @@ VIEW_RECORD = HostStruct(
         ("world_down", "vec3f"),
         ("world_forward", "vec3f"),
         ("position", "vec3f"),
+        # pinhole: world ray per unit of depth = ray_origin + column·ray_column + row·ray_row
+        ("ray_origin", "vec3f"),
+        ("ray_column", "vec3f"),
+        ("ray_row", "vec3f"),
         ("focal", "vec2f"),  # pixels
         ("centre", "vec2f"),  # pixels, GPU convention: pixel centres at +0.5
         ("size", "vec2f"),  # pixels
@@ -55,7 +59,12 @@ VALID, OBJECT, MATERIAL_SHIFT = 1, 2, 8
 def pack_view(view: View, /) -> NDArray[Any]:
     """One `VIEW_RECORD`. The GPU's half-pixel shift is made here and nowhere else."""
     rotation = view.world_from_camera[:3, :3]
+    column = rotation[:, 0] / view.fx if view.fx else np.zeros(3)
+    row = rotation[:, 1] / view.fy if view.fy else np.zeros(3)
     return VIEW_RECORD.pack(
+        ray_origin=rotation[:, 2] - (view.cx + 0.5) * column - (view.cy + 0.5) * row,
+        ray_column=column,
+        ray_row=row,
         world_right=rotation[:, 0],
         world_down=rotation[:, 1],
         world_forward=rotation[:, 2],

@@ -51,7 +51,7 @@ fn towards(normal: vec3f, sight: vec3f) -> u32 {
 }
 
 @fragment fn surface(in: Corner) -> @location(0) vec4u {
-  let sight = world_direction(ray_planar(in.clip.xy));
+  let sight = world_ray(in.clip.xy);
   return vec4u(
     bitcast<u32>(1.0 / in.clip.w),
     towards(in.normal, sight),

@@ -5,7 +5,9 @@ fn nearest_texel(place: vec2f) -> vec2i {
 }
 
 fn paraboloid_share(point: Receiver, place: vec2f) -> f32 {
-  return select(0.0, 1.0, paraboloid_texel_lit(point, nearest_texel(place)));
+  // A disc lies within its map: only its rim can round up to one texel too many.
+  let texel = min(vec2i(place), vec2i(i32(MAP_SIZE) - 1));
+  return select(0.0, 1.0, paraboloid_texel_lit(point, texel));
 }
 
 fn spot_share(point: Receiver, place: vec2f) -> f32 {

@@ -194,6 +194,12 @@ end_header
 3 0 2 3
 """
 
+RESPONSE_CSV = b"""encoded,linear_r,linear_g,linear_b
+0,0,0,0
+0.5,0.2,0.21,0.22
+1,1,1,1
+"""
+
 CAMERA_YAML = b"""%YAML:1.0
 ---
 image_width: 640
@@ -315,4 +321,5 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "mesh.glb": _write(glb(gltf_json(None), GLTF_BINARY)),
     "camera.toml": _toml,
     "camera.opencv": _write(CAMERA_YAML),
+    "response.csv": _write(RESPONSE_CSV),
 }

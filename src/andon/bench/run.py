@@ -28,7 +28,8 @@ def machine() -> str:
     from andon import __version__
 
     cores = os.cpu_count()
-    return f"{platform.machine()}, {cores} cores, Python {platform.python_version()}, andon {__version__}"
+    python = platform.python_version()
+    return f"{platform.machine()}, {cores} cores, Python {python}, andon {__version__}"
 
 
 def _timed(step: Callable[[], object]) -> float:
@@ -112,7 +113,8 @@ def _print(row: BenchRow, result: dict[str, Any]) -> None:
     bar = "" if row.bar is None else f" (bar {sign} {row.bar:g} {unit})"
     print(
         f"{word}  {row.name}: {result['ours_seconds'] * 1e3:.1f} ms, "
-        f"{result['mpix_per_second']:.1f} Mpix/s; {row.peer} {result['peer_seconds'] * 1e3:.1f} ms; "
+        f"{result['mpix_per_second']:.1f} Mpix/s; "
+        f"{row.peer} {result['peer_seconds'] * 1e3:.1f} ms; "
         f"ratio {result['ratio']:.2f}{bar}; agreement {result['agreement']:.4f}; "
         f"{result['adapter']}",
         flush=True,

@@ -109,7 +109,8 @@ def _octahedral(normal: NDArray[np.float64]) -> NDArray[np.uint32]:
 def unpack_surface(packed: NDArray[np.uint32], view: View, /) -> dict[str, NDArray[Any]]:
     """depth, normal, reflectance, valid, is_object and material_id from a packed G-buffer."""
     halves = np.stack([packed[..., 1] & 0xFFFF, packed[..., 1] >> 16], axis=-1)
-    e = np.maximum(halves.astype(np.uint16).view(np.int16) / 32767.0, -1)
+    signed: NDArray[np.int16] = halves.astype(np.uint16).view(np.int16)
+    e: NDArray[np.float64] = np.maximum(np.asarray(signed, np.float64) / 32767.0, -1.0)
     z = 1 - np.abs(e).sum(axis=-1, keepdims=True)
     xy = np.where(z >= 0, e, (1 - np.abs(e[..., ::-1])) * np.where(e >= 0, 1.0, -1.0))
     normal = np.concatenate([xy, z], axis=-1)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from andon.lamps import PointLamp
 from andon.rays import RayScene
 
-__all__ = ["EDGE_TEXELS", "shadow_edges"]
+__all__ = ["EDGE_TEXELS", "near_change", "shadow_edges"]
 
 Float = NDArray[np.float64]
 Visible = Callable[[Float, Float, Float], NDArray[np.bool_]]
@@ -70,3 +70,12 @@ def shadow_edges(
             lamp_at = np.broadcast_to(lamp.position_m, ray.shape)
             past |= casters.first_hits(lamp_at, ray).distance > PAST * np.where(usable, along, 0)
     return past | ((lit > 0) & (lit < steps**2))
+
+
+def near_change(mask: NDArray[np.bool_], reach: int, /) -> NDArray[np.bool_]:
+    """(H, W) bool: `mask` (H, W) changes within `reach` pixels."""
+    import cv2
+
+    kernel = np.ones((2 * reach + 1,) * 2, np.uint8)
+    codes = mask.astype(np.uint8)
+    return np.asarray(cv2.dilate(codes, kernel) != cv2.erode(codes, kernel), bool)

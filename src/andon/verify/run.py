@@ -27,7 +27,7 @@ def chosen(names: Sequence[str], known: Sequence[Any]) -> list[Any]:
 
 
 def measured(row: Row) -> dict[str, Any]:
-    """The row as JSON: name, stage, bar, figure, unit, holds, against; and why not, if not shown."""
+    """The row as JSON: name, stage, bar, figure, unit, holds, against; why not, if not shown."""
     result: dict[str, Any] = {"name": row.name, "stage": row.stage, "bar": row.bar}
     try:
         figure = float(row.measure())

@@ -146,9 +146,7 @@ class FaceMaps:
         render.end()
         self._resampling.encode(encoder, self.discs[layer : layer + 2], [slot.resampling])
 
-    def _upload(
-        self, slot: _Slot, position: NDArray[np.float64], seen: NDArray[np.int32]
-    ) -> None:
+    def _upload(self, slot: _Slot, position: NDArray[np.float64], seen: NDArray[np.int32]) -> None:
         record = FACE_RECORD.pack(position=position, near_m=self.near_m)
         write_buffer(self.gpu, slot.lamp, record)
         if len(seen):
@@ -161,8 +159,8 @@ class TrianglePlanes:
 
     def __init__(self, positions: NDArray[np.float32], triangles: NDArray[np.int32]) -> None:
         a, b, c = (positions[triangles[:, i]].astype(np.float64) for i in range(3))
-        self._normal = np.cross(b - a, c - a)
-        self._offset = np.einsum("ij,ij->i", self._normal, a)
+        self._normal: NDArray[np.float64] = np.cross(b - a, c - a)
+        self._offset: NDArray[np.float64] = np.einsum("ij,ij->i", self._normal, a)
         self._tiny = 1e-12 * np.linalg.norm(self._normal, axis=1) + 1e-300
 
     def seen_from(self, lamp: NDArray[np.float64], /) -> NDArray[np.float32]:
@@ -171,8 +169,8 @@ class TrianglePlanes:
         q = n/(n·(a − lamp)); along a unit direction d the plane is 1/(q·d) away. Large where the
         lamp lies in the plane, which then is seen edge-on.
         """
-        distance = self._offset - self._normal @ lamp
+        distance: NDArray[np.float64] = self._offset - self._normal @ lamp
         distance = np.where(np.abs(distance) < self._tiny, self._tiny, distance)
         planes = np.zeros((len(distance), 4), np.float32)
-        np.clip(self._normal / distance[:, None], -1e30, 1e30, out=planes[:, :3], casting="same_kind")
+        planes[:, :3] = np.clip(self._normal / distance[:, None], -1e30, 1e30)
         return planes

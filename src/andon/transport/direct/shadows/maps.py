@@ -12,7 +12,7 @@ from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.passes import pipeline_layout, shader_module
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
-from andon.lamps import DirectionalLamp, Lamp, PointLamp, SpotLamp
+from andon.lamps import DirectionalLamp, Lamp, PointLamp, Shadow, SpotLamp
 from andon.quantities import Geometry
 from andon.transport.direct.records import STRUCTS, WIDE_SPOT_RADIANS, PlanarFrame
 from andon.transport.direct.shadows.face_maps import FaceMaps
@@ -24,6 +24,11 @@ FOLDER = "andon/transport/direct/shadows"
 NEAR_M = 0.01
 # A depth map without casters would have an empty bounding sphere.
 EMPTY_RADIUS_M = 1.0
+
+
+def shadow_of(lamp: Lamp, /) -> Shadow | None:
+    """How the lamp's shadow is wanted; None for lamps that cast none."""
+    return lamp.shadow if isinstance(lamp, PointLamp | DirectionalLamp) else None
 
 
 def is_paraboloid(lamp: Lamp, /) -> bool:
@@ -48,11 +53,11 @@ class ShadowMaps:
 
     def __init__(self, gpu: Gpu, casters: Geometry, lamps: Sequence[Lamp]) -> None:
         self.gpu = gpu
-        shadowed = [lamp for lamp in lamps if getattr(lamp, "shadow", None) is not None]
-        self.size: int = max((lamp.shadow.map_size for lamp in shadowed), default=2)  # type: ignore[union-attr]
+        shadowed = [lamp for lamp in lamps if shadow_of(lamp) is not None]
+        wishes = [wish for lamp in lamps if (wish := shadow_of(lamp)) is not None]
+        self.size = max((wish.map_size for wish in wishes), default=2)
         self.size += self.size % 2
-        filters = {lamp.shadow.filter for lamp in shadowed}
-        self.filter = "none" if filters <= {"none"} else "linear"
+        self.filter = "linear" if any(wish.filter == "linear" for wish in wishes) else "none"
         round_lamps = [lamp.name for lamp in shadowed if is_paraboloid(lamp)]
         flat_lamps = [lamp.name for lamp in shadowed if not is_paraboloid(lamp)]
         self.layers = {name: 2 * i for i, name in enumerate(round_lamps)}

@@ -8,7 +8,9 @@ import pytest
 from andon.gpu import wgsl
 from andon.gpu.layout import HostStruct
 from andon.gpu.passes import shader_module
+from andon.lamps import DirectionalLamp, PointLamp, SkyLamp, SpotLamp
 from andon.surface.stage import PLAIN, TEXTURED
+from andon.transport.direct.records import sorted_lamps
 from andon.transport.direct.stage import FILTER, SUM, sum_of_lamps
 
 from .tree import modules
@@ -20,6 +22,17 @@ MODULES = wgsl.all_modules()
 TEXTS = {path: wgsl._read(path) for path in MODULES}
 PROGRAMS = [path for path in MODULES if ENTRY_POINT.search(TEXTS[path])]
 
+DOWN, GREY = np.array([0.0, -1.0, 0.0]), np.ones(3)
+ONE_OF_EACH = sorted_lamps(
+    [
+        PointLamp("point", DOWN, GREY),
+        SpotLamp("spot", DOWN, GREY, outer_radians=0.5),
+        SpotLamp("wide", DOWN, GREY, outer_radians=1.5),
+        DirectionalLamp("sun", DOWN, GREY),
+        SkyLamp("sky", -DOWN, GREY),
+    ]
+)
+
 PROJECTION = "andon/gbuffer/projections/{}.wgsl"
 VARIANTS = {
     "as written": {},
@@ -27,8 +40,8 @@ VARIANTS = {
     "latlong": {PROJECTION.format("pinhole"): PROJECTION.format("latlong")},
     "linear filter": {FILTER.format("none"): FILTER.format("linear")},
     "textures": {PLAIN: TEXTURED},
-    "one lamp of each kind": {SUM: sum_of_lamps([1, 1, 1, 1, 1])},
-    "no lamps": {SUM: sum_of_lamps([0, 0, 0, 0, 0])},
+    "one lamp of each kind": {SUM: sum_of_lamps(ONE_OF_EACH, {"point": 0}, 1024)},
+    "no lamps": {SUM: sum_of_lamps([[], [], [], [], []], {}, 2)},
 }
 
 

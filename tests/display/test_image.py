@@ -50,7 +50,7 @@ def test_a_sheet():
     assert (sheet[CAPTION_PX:height, :width] == tiles[0][1]).all()
     assert (sheet[height + CAPTION_PX :, :width] == 90).all()
     # The bar of the first tile widens the others; what is left of the last row is paper.
-    assert (sheet[CAPTION_PX:height, width : 2 * width][:, -40:] == HOLE).all()
+    assert (sheet[CAPTION_PX:height, width : 2 * width][:, -10:] == HOLE).all()
     assert len(np.unique(sheet[height:, width:].reshape(-1, 3), axis=0)) == 1
     # Captions are written in ink.
     assert sheet[:CAPTION_PX, :width].min() < 60

@@ -55,7 +55,7 @@ def _bar(height: int, top: float, unit: str) -> Rgb:
     import cv2
     from PIL import Image, ImageDraw, ImageFont
 
-    margin = 16
+    margin = min(16, (height - 1) // 2)
     rows = np.linspace(255, 0, height - 2 * margin)[:, None].repeat(16, axis=1).astype(np.uint8)
     image = Image.new("RGB", (BAR_WIDTH_PX, height), PAPER)
     colours = np.asarray(cv2.applyColorMap(rows, cv2.COLORMAP_INFERNO), np.uint8)[..., ::-1]

@@ -302,5 +302,6 @@ def test_a_ball_by_the_closed_form(engine):
     steep = cosine > 0.5
     away = np.linalg.norm(view.rays_planar() * depth[..., None], axis=-1)
     expected = (cosine / away**2)[steep, None] * lamp.intensity_cd
-    assert_agree(frame.illuminance.lux[steep], expected, rtol=0.02)
+    # Normals of a curved surface from 7×7 pixels: two hundredths at the rim.
+    assert_agree(frame.illuminance.lux[steep], expected, rtol=0.025)
     assert frame.image.rgb[steep].min() > 90

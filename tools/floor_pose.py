@@ -21,7 +21,9 @@ def main() -> None:
     """Prints the matrix as TOML."""
     raw = np.load(DATA / "disparity.npz")["arr_0"].astype(float)
     view = View("pinhole", 741, 500, 994.978, 994.978, 311.193, 254.877)
-    depth = depth_from_raw(raw, view, DepthEncoding("disparity", baseline_m=0.193001, doffs_px=31.086))
+    depth = depth_from_raw(
+        raw, view, DepthEncoding("disparity", baseline_m=0.193001, doffs_px=31.086)
+    )
     points = (view.rays_planar() * depth[..., None])[400:, 20:720].reshape(-1, 3)
     points = points[np.isfinite(points).all(axis=1)]
     for _ in range(20):  # least squares, outliers (tyres, stand) dropped

@@ -39,7 +39,9 @@ def lantern() -> tuple[np.ndarray, np.ndarray]:
             wood.append(box([-inner, y - bar, side - bar], [inner, y + bar, side + bar]))
             wood.append(box([side - bar, y - bar, -inner], [side + bar, y + bar, inner]))
     wood.append(box([-half - 0.03, 0.0, -half - 0.03], [half + 0.03, 0.012, half + 0.03]))
-    wood.append(box([-half - 0.02, HEIGHT_M, -half - 0.02], [half + 0.02, HEIGHT_M + 0.015, half + 0.02]))
+    wood.append(
+        box([-half - 0.02, HEIGHT_M, -half - 0.02], [half + 0.02, HEIGHT_M + 0.015, half + 0.02])
+    )
     inset, sheet = half - post * 0.35, 0.001
     low, high = 0.055, HEIGHT_M - 0.035
     paper = [box([-inset, low, s - sheet], [inset, high, s + sheet]) for s in (-inset, inset)]

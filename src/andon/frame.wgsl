@@ -18,10 +18,6 @@
 // cd/m² that the materials of virtual objects emit.
 @group(0) @binding(5) var<uniform> emitted: array<vec4f, 256>;
 
-// Half floats end at 65504; a candle at a centimetre and the sun do not. Lux are stored in units
-// of 64.
-const LUX_UNIT: f32 = 64.0;
-
 fn added_lux(point: SurfacePoint) -> vec3f {
   let bias = select(direct.bias_real_m, direct.bias_object_m, (point.flags & OBJECT) != 0u);
   let lux = illuminance(point.position, point.normal, bias);
@@ -60,5 +56,5 @@ fn point_at(pixel: vec2f) -> SurfacePoint {
 }
 
 @fragment fn illuminance_map(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
-  return vec4f(added_lux(point_at(pixel.xy)) / LUX_UNIT, 1.0);
+  return vec4f(added_lux(point_at(pixel.xy)), 1.0);
 }

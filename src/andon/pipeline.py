@@ -2,7 +2,8 @@
 
 ::
 
-    capture ─CameraFrame▶ see ─Surface▶ illuminate ─Illuminance▶ compose ─Luminance▶ encode ─▶ DisplayImage
+    capture ─CameraFrame▶ see ─Surface▶ illuminate ─Illuminance▶ compose ─Luminance▶ encode
+                                                                            └▶ DisplayImage
 
 One frame, one or two views: what does not depend on the eye (geometry, lamps, shadow maps) is
 shared, the rest is done per view.
@@ -67,13 +68,23 @@ class Report:
     occluder_error_m: float
     shadow_bias_m: float
     maps_redrawn: int
-    stage_seconds: Mapping[str, float] = field(default_factory=dict)
+    stage_seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     ignored_tables: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Frame:
-    """One view of one moment: every quantity that flowed, as arrays (H, W, …)."""
+    """One view of one moment: every quantity that flowed, as arrays (H, W, …).
+
+    Attributes
+    ----------
+    captured : the photograph as linear light.
+    surface : what is where; which pixels are holes or virtual objects.
+    illuminance : ΔE that the lamps add, lx.
+    luminance : what leaves towards the camera, cd/m².
+    image : 8-bit codes for the screen.
+    report : engine, times, holes and what else is worth knowing.
+    """
 
     captured: CameraFrame
     surface: Surface
@@ -173,7 +184,8 @@ class Renderer:
             hole_pixels=surface.holes,
             clipped_pixels=clipped,
             occluder_triangles=len(model.shadow_casters.triangles),
-            occluder_triangles_before=model.occluder.triangles_before + len(model.casters.triangles),
+            occluder_triangles_before=model.occluder.triangles_before
+            + len(model.casters.triangles),
             occluder_error_m=model.occluder.error_m,
             shadow_bias_m=model.bias.real_m,
             maps_redrawn=self._engine.maps_redrawn,

@@ -161,7 +161,7 @@ class Illuminance:
 
 @dataclass(frozen=True)
 class Luminance:
-    """What leaves towards the camera, (H, W, 3) float in cd/m²."""
+    """What leaves towards the camera: `cd_m2` (H, W, 3) float in cd/m²; `photometry` as above."""
 
     cd_m2: NDArray[np.floating[Any]]
     photometry: Photometry = "absolute"
@@ -169,6 +169,6 @@ class Luminance:
 
 @dataclass(frozen=True)
 class DisplayImage:
-    """What a screen is sent: (H, W, 3) uint8, encoded with the camera's response (VST)."""
+    """What a screen is sent: `rgb` (H, W, 3) uint8, encoded with the camera's response (VST)."""
 
     rgb: NDArray[np.uint8]

@@ -54,15 +54,17 @@ class RayScene:
     """Triangles that rays can be shot at."""
 
     def __init__(self, geometry: Geometry) -> None:
-        from embreex.mesh_construction import TriangleMesh
-        from embreex.rtcore_scene import EmbreeScene
+        from embreex import mesh_construction, rtcore_scene
+
+        embree: Any = rtcore_scene
+        meshes: Any = mesh_construction
 
         self.geometry = geometry
         # Robust: rays do not slip through the edge that two triangles share.
-        self._scene: Any = EmbreeScene(robust=True)
+        self._scene: Any = embree.EmbreeScene(robust=True)
         if len(geometry.triangles):
             # The mesh has to outlive the queries: the scene only borrows its buffers.
-            self._mesh: Any = TriangleMesh(
+            self._mesh: Any = meshes.TriangleMesh(
                 self._scene,
                 np.ascontiguousarray(geometry.positions, np.float32),
                 np.ascontiguousarray(geometry.triangles, np.int32),
@@ -106,9 +108,7 @@ class RayScene:
         distance = np.linalg.norm(reach, axis=-1)
         with np.errstate(invalid="ignore", divide="ignore"):
             directions = reach / distance[:, None]
-        hits = self._run(
-            points, directions, query="OCCLUDED", dists=distance * (1 - LAMP_GAP)
-        )
+        hits = self._run(points, directions, query="OCCLUDED", dists=distance * (1 - LAMP_GAP))
         return hits < 0
 
     def sees_infinity(self, points: Float, direction: Float, /) -> NDArray[np.bool_]:

@@ -92,6 +92,43 @@ def huge_exr(side: int) -> bytes:
     )
 
 
+# sRGB's and Adobe RGB's primaries adapted to D50 (both from their published profiles).
+SRGB_D50 = np.array([[0.4361, 0.3851, 0.1431], [0.2225, 0.7169, 0.0606], [0.0139, 0.0971, 0.7141]])
+ADOBE_D50 = np.array([[0.6097, 0.2053, 0.1492], [0.3111, 0.6257, 0.0632], [0.0195, 0.0609, 0.7446]])
+GAMMA_1 = b"curv\0\0\0\0" + struct.pack(">I", 0)
+GAMMA_2_2 = b"curv\0\0\0\0" + struct.pack(">IH", 1, 563)  # 2.19921875 as Adobe RGB
+
+
+def matrix_profile(
+    columns: np.ndarray = ADOBE_D50, curve: bytes = GAMMA_2_2, space: bytes = b"RGB "
+) -> bytes:
+    """An ICC v2 display profile with the given XYZ columns (PCS, D50) and one tone curve."""
+
+    def xyz(values: np.ndarray) -> bytes:
+        return b"XYZ \0\0\0\0" + struct.pack(">3i", *np.rint(np.array(values) * 65536).astype(int))
+
+    name = b"test profile\0"
+    described = b"desc\0\0\0\0" + struct.pack(">I", len(name)) + name + bytes(78)
+    tags = {b"desc": described, b"cprt": b"text\0\0\0\0free\0",
+            b"wtpt": xyz(np.array([0.9642, 1.0, 0.8249]))}  # fmt: skip
+    if space == b"GRAY":
+        tags[b"kTRC"] = curve
+    else:
+        for i, letter in enumerate((b"r", b"g", b"b")):
+            tags[letter + b"XYZ"] = xyz(columns[:, i])
+            tags[letter + b"TRC"] = curve
+    table, body = b"", b""
+    start = 128 + 4 + 12 * len(tags)
+    for key, value in tags.items():
+        table += struct.pack(">4sII", key, start + len(body), len(value))
+        body += value + bytes(-len(value) % 4)
+    size = start + len(body)
+    head = struct.pack(">I4sI4s4s4s12s4s", size, bytes(4), 0x02400000, b"mntr", space, b"XYZ ",
+                       bytes(12), b"acsp").ljust(68, b"\0")  # fmt: skip
+    head += struct.pack(">3i", 63190, 65536, 54061)
+    return head.ljust(128, b"\0") + struct.pack(">I", len(tags)) + table + body
+
+
 def pfm(values: np.ndarray, order: str = "<") -> bytes:
     head = f"Pf\n{values.shape[1]} {values.shape[0]}\n{-1.0 if order == '<' else 1.0}\n"
     return head.encode() + values[::-1].astype(f"{order}f4").tobytes()
@@ -155,6 +192,12 @@ end_header
 0 1 0 0 0 1
 3 0 1 2
 3 0 2 3
+"""
+
+RESPONSE_CSV = b"""encoded,linear_r,linear_g,linear_b
+0,0,0,0
+0.5,0.2,0.21,0.22
+1,1,1,1
 """
 
 CAMERA_YAML = b"""%YAML:1.0
@@ -278,4 +321,5 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "mesh.glb": _write(glb(gltf_json(None), GLTF_BINARY)),
     "camera.toml": _toml,
     "camera.opencv": _write(CAMERA_YAML),
+    "response.csv": _write(RESPONSE_CSV),
 }

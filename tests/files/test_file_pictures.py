@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import struct
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,18 @@ from andon.errors import InputError
 from andon.files import decode_picture, read_picture
 from andon.responses import srgb_decode, srgb_encode
 
-from .specimens import pillow_bytes, png16, png_chunk, png_header, rgb
+from .specimens import (
+    ADOBE_D50,
+    GAMMA_1,
+    GAMMA_2_2,
+    SRGB_D50,
+    matrix_profile,
+    pillow_bytes,
+    png16,
+    png_chunk,
+    png_header,
+    rgb,
+)
 
 RGB8 = rgb().astype(np.uint8)
 RGB16 = rgb(top=65535).astype(np.uint16)
@@ -74,8 +86,6 @@ def test_16_bits_stay_16_bits() -> None:
 
 
 def test_16_bit_gray_with_alpha_by_hand() -> None:
-    import zlib
-
     rows = b"".join(b"\0" + struct.pack(">HHHH", g, 65535, g + 1, 1) for g in (300, 40000))
     data = (
         png_header(2, 2, 16, 4) + png_chunk(b"IDAT", zlib.compress(rows)) + png_chunk(b"IEND", b"")
@@ -157,39 +167,6 @@ def srgb_profile() -> bytes:
     return ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
 
 
-def matrix_profile(columns: np.ndarray, curve: bytes, space: bytes = b"RGB ") -> bytes:
-    """An ICC v2 display profile with the given XYZ columns (PCS, D50) and one tone curve."""
-
-    def xyz(values: np.ndarray) -> bytes:
-        return b"XYZ \0\0\0\0" + struct.pack(">3i", *np.rint(np.array(values) * 65536).astype(int))
-
-    name = b"test profile\0"
-    described = b"desc\0\0\0\0" + struct.pack(">I", len(name)) + name + bytes(78)
-    tags = {b"desc": described, b"cprt": b"text\0\0\0\0free\0",
-            b"wtpt": xyz(np.array([0.9642, 1.0, 0.8249]))}  # fmt: skip
-    if space == b"GRAY":
-        tags[b"kTRC"] = curve
-    else:
-        for i, letter in enumerate((b"r", b"g", b"b")):
-            tags[letter + b"XYZ"] = xyz(columns[:, i])
-            tags[letter + b"TRC"] = curve
-    table, body = b"", b""
-    start = 128 + 4 + 12 * len(tags)
-    for key, value in tags.items():
-        table += struct.pack(">4sII", key, start + len(body), len(value))
-        body += value + bytes(-len(value) % 4)
-    size = start + len(body)
-    head = struct.pack(">I4sI4s4s4s12s4s", size, bytes(4), 0x02400000, b"mntr", space, b"XYZ ",
-                       bytes(12), b"acsp").ljust(68, b"\0")  # fmt: skip
-    head += struct.pack(">3i", 63190, 65536, 54061)
-    return head.ljust(128, b"\0") + struct.pack(">I", len(tags)) + table + body
-
-
-# sRGB's and Adobe RGB's primaries adapted to D50 (both from their published profiles).
-SRGB_D50 = np.array([[0.4361, 0.3851, 0.1431], [0.2225, 0.7169, 0.0606], [0.0139, 0.0971, 0.7141]])
-ADOBE_D50 = np.array([[0.6097, 0.2053, 0.1492], [0.3111, 0.6257, 0.0632], [0.0195, 0.0609, 0.7446]])
-GAMMA_1 = b"curv\0\0\0\0" + struct.pack(">I", 0)
-GAMMA_2_2 = b"curv\0\0\0\0" + struct.pack(">IH", 1, 563)  # 2.19921875 as Adobe RGB
 PARA_SRGB = b"para\0\0\0\0\0\x03\0\0" + struct.pack(
     ">5i", *(round(v * 65536) for v in (2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045))
 )
@@ -220,7 +197,7 @@ def test_profiles_are_converted_in_8_and_16_bits(
     assert np.abs(picture.values.astype(int) - MUTED8).max() > 8  # it did something
 
     body = png16(MUTED16)
-    iccp = png_chunk(b"iCCP", b"x\0\0" + __import__("zlib").compress(profile))
+    iccp = png_chunk(b"iCCP", b"x\0\0" + zlib.compress(profile))
     with_profile = body[:33] + iccp + body[33:]
     wide = decode_picture(with_profile, "a.png")
     assert wide.values.dtype == np.uint16
@@ -234,7 +211,7 @@ def test_tone_curves_of_16_bit_profiles(curve: bytes) -> None:
     profile = matrix_profile(ADOBE_D50, curve)
     gray = np.repeat(np.linspace(0, 65535, 50).astype(np.uint16)[None, :, None], 3, axis=-1)
     body = png16(gray)
-    iccp = png_chunk(b"iCCP", b"x\0\0" + __import__("zlib").compress(profile))
+    iccp = png_chunk(b"iCCP", b"x\0\0" + zlib.compress(profile))
     read = decode_picture(body[:33] + iccp + body[33:], "a.png").values
     assert np.abs(read.astype(int) - gray).max() <= 60
 
@@ -245,7 +222,7 @@ def test_gray_profiles_are_converted() -> None:
     read = decode_picture(pillow_bytes(gray, "PNG", icc_profile=profile), "g.png").values
     assert np.abs(read[..., 1] - srgb_encode(gray / 255) * 255).max() <= 1
     body = png16(gray.astype(np.uint16) * 257)
-    iccp = png_chunk(b"iCCP", b"x\0\0" + __import__("zlib").compress(profile))
+    iccp = png_chunk(b"iCCP", b"x\0\0" + zlib.compress(profile))
     wide = decode_picture(body[:33] + iccp + body[33:], "g.png").values
     assert np.abs(wide[..., 1] - srgb_encode(gray / 255) * 65535).max() <= 2
 

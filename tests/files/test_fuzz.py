@@ -7,17 +7,34 @@ import time
 import tracemalloc
 import warnings
 import zipfile
+import zlib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from PIL import Image
 
 from andon.errors import InputError
-from andon.files import READERS, Reader, reader_for
+from andon.files import READERS, Reader, decode_picture, reader_for
 
-from .specimens import SPECIMENS, hdr_header, huge_exr, npy, png_header
+from .specimens import (
+    GLTF_BINARY,
+    SPECIMENS,
+    glb,
+    gltf_json,
+    hdr_header,
+    huge_exr,
+    matrix_profile,
+    npy,
+    pillow_bytes,
+    png16,
+    png_chunk,
+    png_header,
+    rgb,
+)
 
 SIDE = 60_000
 OFFSETS = 80
@@ -46,7 +63,7 @@ def by_name(reader: Reader) -> str:
 
 def test_every_registered_reader_has_a_specimen_and_a_kind() -> None:
     assert [reader.name for reader in READERS] == list(SPECIMENS)
-    assert {reader.kind for reader in READERS} == {"picture", "depth", "mesh", "camera"}
+    assert {reader.kind for reader in READERS} == {"picture", "depth", "mesh", "camera", "response"}
 
 
 @pytest.mark.parametrize("reader", READERS, ids=by_name)
@@ -217,3 +234,71 @@ def test_claims_and_nesting_are_refused_cheaply(name: str, data: bytes, tmp_path
     assert tracemalloc.get_traced_memory()[1] < 50e6
     tracemalloc.stop()
     assert time.perf_counter() - started < 1.0
+
+
+JSON_VALUES = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(-2, 9),
+    st.sampled_from([2**31, 10**30, 1e308, -0.5, "", "x", "data:,", "../x", "VEC3", 5125, 5126]),
+    st.lists(st.integers(0, 3), max_size=16),
+    st.dictionaries(st.sampled_from(["index", "light", "count", "indices"]), st.integers(0, 3)),
+)
+
+
+@settings(
+    max_examples=150,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@given(
+    places=st.lists(st.lists(st.integers(0, 20), max_size=8), min_size=1, max_size=3),
+    values=st.lists(JSON_VALUES, min_size=3, max_size=3),
+)
+def test_gltf_survives_wrong_values_in_any_place(
+    tmp_path: Path, places: list[list[int]], values: list[object]
+) -> None:
+    document: Any = gltf_json()
+    for place, value in zip(places, values, strict=False):
+        at = document
+        for step in place:
+            keys = list(at) if isinstance(at, dict) else list(range(len(at)))
+            if not keys:
+                break
+            key = keys[step % len(keys)]
+            if step == place[-1] or not isinstance(at[key], dict | list):
+                at[key] = value
+                break
+            at = at[key]
+    path = tmp_path / "a.glb"
+    document = document if isinstance(document, dict) else {}
+    path.write_bytes(glb(document, GLTF_BINARY))
+    read_or_refuse(reader_for(path, "mesh"), path)
+
+
+@pytest.mark.parametrize("bits", [8, 16])
+@settings(max_examples=80, deadline=None, derandomize=True)
+@given(changes=st.lists(st.tuples(st.floats(0, 1), st.integers(0, 255)), min_size=1, max_size=4))
+def test_damaged_profiles_and_exif_inside_sound_files(
+    bits: int, changes: list[tuple[float, int]]
+) -> None:
+    """The checksums of a PNG would hide these from bytes flipped in the file."""
+    body = png16(rgb(top=65535)) if bits == 16 else pillow_bytes(rgb().astype(np.uint8), "PNG")
+    exif = Image.Exif()
+    exif[0x0112] = 6
+    exif.get_ifd(0x8769)[0xA405] = 28
+    damaged = []
+    for block in (matrix_profile(), exif.tobytes()[6:]):
+        data = bytearray(block)
+        for place, value in changes:
+            data[min(int(place * len(data)), len(data) - 1)] = value
+        damaged.append(bytes(data))
+    extra = png_chunk(b"iCCP", b"x\0\0" + zlib.compress(damaged[0])) + png_chunk(
+        b"eXIf", damaged[1]
+    )
+    try:
+        picture = decode_picture(body[:33] + extra + body[33:], "a.png")
+    except InputError:
+        return
+    assert picture.values.dtype == (np.uint16 if bits == 16 else np.uint8)

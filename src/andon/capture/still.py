@@ -63,9 +63,10 @@ def frame_from_picture(
     clipped = np.zeros(view.shape, bool)
     if picture.encoding == "srgb":
         top = np.iinfo(picture.values.dtype).max
-        clipped = (picture.values >= top - CLIPPED_CODES).any(axis=-1)
+        clipped = np.asarray((picture.values >= top - CLIPPED_CODES).any(axis=-1), bool)
     if undistorted and view.distortion:
         linear = np.nan_to_num(undistort(linear, view))
-        clipped = undistort(clipped.astype(np.uint8), view, method="nearest").astype(bool)
+        codes = np.asarray(clipped, np.uint8)
+        clipped = undistort(codes, view, method="nearest") > 0
     view = replace(view, distortion=())
     return CameraFrame(linear, view, response, luminance_per_unit, time_seconds, clipped)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from enum import Enum
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -20,7 +20,7 @@ app = typer.Typer(
 )
 
 
-class Engine(str, Enum):
+class Engine(StrEnum):
     """Which engine draws."""
 
     auto = "auto"
@@ -28,7 +28,7 @@ class Engine(str, Enum):
     reference = "reference"
 
 
-class DepthKind(str, Enum):
+class DepthKind(StrEnum):
     """What the numbers of a depth file are."""
 
     z = "z"

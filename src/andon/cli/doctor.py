@@ -58,9 +58,15 @@ def _exr() -> str | None:
 
 
 def _rtrace() -> str | None:
-    from andon.verify.truths.radiance import program_version
+    """Radiance, if the wheel that brings its programs is there with them."""
+    from importlib.util import find_spec
+    from pathlib import Path
 
-    return program_version()
+    spec = find_spec("pyradiance")
+    if spec is None or spec.origin is None:
+        return None
+    program = Path(spec.origin).parent / "bin" / "rtrace"
+    return f"pyradiance {_package('pyradiance')}" if program.exists() else None
 
 
 def findings() -> list[Finding]:

@@ -12,7 +12,7 @@
   let packed = textureLoad(gbuffer, vec2i(pixel.xy), 0);
   let ray = ray_planar(pixel.xy);
   let surface_m = select(1e30, bitcast<f32>(packed.x) * length(ray), (packed.w & VALID) != 0u);
-  let direction = normalize(world_direction(ray));
+  let direction = normalize(world_ray(pixel.xy));
   let angle = 2.0 * asin(clamp(0.5 * length(direction - disc.direction), 0.0, 1.0));
   // Angle of a pixel, from its neighbour: the square root of its solid angle for square pixels.
   let along_x = normalize(ray_planar(pixel.xy + vec2f(0.5, 0.0)))

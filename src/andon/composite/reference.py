@@ -35,7 +35,12 @@ def object_luminance(surface: Surface, ambient: Ambient, added_lux: Float, /) ->
 
 
 def compose(
-    frame: CameraFrame, surface: Surface, ambient: Ambient, added_lux: Float, lamps: Sequence[Lamp], /
+    frame: CameraFrame,
+    surface: Surface,
+    ambient: Ambient,
+    added_lux: Float,
+    lamps: Sequence[Lamp],
+    /,
 ) -> Float:
     """Luminance (H, W, 3) in cd/m² of the whole picture.
 

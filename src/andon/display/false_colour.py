@@ -1,4 +1,4 @@
-"""Measured quantities as pictures for people: false colours with a scale bar, and contact sheets."""
+"""Measured quantities as pictures for people: false colours with a scale bar, contact sheets."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def false_colour(
     top = _round_up(max(top, 1e-6))
     share = np.log10(np.maximum(values, 1e-12) / top) / DECADES + 1
     codes = np.clip(np.nan_to_num(share) * 255, 0, 255).astype(np.uint8)
-    picture = np.asarray(cv2.applyColorMap(codes, cv2.COLORMAP_INFERNO))[..., ::-1].copy()
+    picture = np.asarray(cv2.applyColorMap(codes, cv2.COLORMAP_INFERNO), np.uint8)[..., ::-1].copy()
     if valid is not None:
         picture[~valid] = HOLE
     return np.concatenate([picture, _bar(len(picture), top, unit)], axis=1)
@@ -58,7 +58,7 @@ def _bar(height: int, top: float, unit: str) -> Rgb:
     margin = min(16, (height - 1) // 2)
     rows = np.linspace(255, 0, height - 2 * margin)[:, None].repeat(16, axis=1).astype(np.uint8)
     image = Image.new("RGB", (BAR_WIDTH_PX, height), PAPER)
-    colours = np.asarray(cv2.applyColorMap(rows, cv2.COLORMAP_INFERNO))[..., ::-1]
+    colours = np.asarray(cv2.applyColorMap(rows, cv2.COLORMAP_INFERNO), np.uint8)[..., ::-1]
     image.paste(Image.fromarray(np.ascontiguousarray(colours)), (8, margin))
     draw, font = ImageDraw.Draw(image), ImageFont.load_default(size=12)
     for power in np.arange(0, DECADES + 0.01, 0.5):
@@ -77,7 +77,7 @@ def depth_picture(depth_m: NDArray[Any], valid: NDArray[np.bool_], /) -> Rgb:
     inverse[valid] = 1 / depth_m[valid]
     low, high = np.percentile(inverse[valid], [0.5, 99.5]) if valid.any() else (0.0, 1.0)
     codes = np.clip((inverse - low) / max(high - low, 1e-12) * 255, 0, 255).astype(np.uint8)
-    picture = np.asarray(cv2.applyColorMap(codes, cv2.COLORMAP_VIRIDIS))[..., ::-1].copy()
+    picture = np.asarray(cv2.applyColorMap(codes, cv2.COLORMAP_VIRIDIS), np.uint8)[..., ::-1].copy()
     picture[~valid] = HOLE
     return picture
 
@@ -91,17 +91,18 @@ def normal_picture(normal: NDArray[Any], valid: NDArray[np.bool_], /) -> Rgb:
 
 def contact_sheet(tiles: Sequence[tuple[str, Rgb]], /, *, columns: int = 3) -> Rgb:
     """Captioned pictures in rows, all brought to the width of the first."""
-    import cv2
-
     height, width = tiles[0][1].shape[:2]
-    cells = [
-        _captioned(caption, np.asarray(cv2.resize(tile, (width, height), interpolation=cv2.INTER_AREA)))
-        for caption, tile in tiles
-    ]
+    cells = [_captioned(caption, _resized(tile, width, height)) for caption, tile in tiles]
     while len(cells) % columns:
         cells.append(np.full_like(cells[0], PAPER))
     rows = [np.concatenate(cells[i : i + columns], axis=1) for i in range(0, len(cells), columns)]
     return np.concatenate(rows, axis=0)
+
+
+def _resized(tile: Rgb, width: int, height: int) -> Rgb:
+    import cv2
+
+    return np.asarray(cv2.resize(tile, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
 
 
 def _captioned(caption: str, tile: Rgb) -> Rgb:

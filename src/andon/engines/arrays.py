@@ -55,9 +55,11 @@ def prepare_arrays(
 
 
 def _picture(photo: NDArray[Any]) -> Picture:
-    is_codes = photo.dtype in (np.uint8, np.uint16)
-    if photo.ndim != 3 or photo.shape[2] != 3 or not (
-        is_codes or np.issubdtype(photo.dtype, np.floating)
+    is_codes = photo.dtype in (np.dtype(np.uint8), np.dtype(np.uint16))
+    if (
+        photo.ndim != 3
+        or photo.shape[2] != 3
+        or not (is_codes or np.issubdtype(photo.dtype, np.floating))
     ):
         raise InputError(
             f"must be (H, W, 3) uint8, uint16 or float, got {photo.shape} {photo.dtype}",

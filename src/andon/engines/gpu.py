@@ -24,8 +24,6 @@ __all__ = ["GpuEngine"]
 
 FRAME = "andon/frame.wgsl"
 STRUCTS = gbuffer.STRUCTS | direct.STRUCTS | composite.STRUCTS
-# frame.wgsl stores illuminance in this many lux, so that half floats reach past sunlight.
-LUX_UNIT = 64.0
 
 
 class _View:
@@ -59,10 +57,13 @@ class _View:
             "structs": STRUCTS,
             "variants": gbuffer.projection_variant(view) | engine.direct.variants,
         }
-        entry, target = self._entry_point(prepared), ["rgba16float"]
-        self.relit = FullscreenPass(gpu, FRAME, entry, target, groups, **options)
-        self.lux = FullscreenPass(gpu, FRAME, "illuminance_map", target, groups, **options)
-        self.lux_map = make_texture(gpu, "rgba16float", view.width, view.height, label="lux")
+        entry = self._entry_point(prepared)
+        self.relit = FullscreenPass(gpu, FRAME, entry, ["rgba16float"], groups, **options)
+        # Half floats end at 65504, sunlight does not, and this picture is for machines.
+        self.lux_map = make_texture(gpu, "rgba32float", view.width, view.height, label="lux")
+        self.lux = FullscreenPass(
+            gpu, FRAME, "illuminance_map", [self.lux_map.format], groups, **options
+        )
 
     def _entry_point(self, prepared: Prepared) -> str:
         if self.composite.has_maps:
@@ -140,7 +141,7 @@ class GpuEngine:
         """The quantities as arrays; draws the illuminance map, which no frame needs."""
         light.lux.encode(self.encoder, [light.lux_map.view])
         self.finish()
-        lux = light.lux_map.read()[..., :3].astype(np.float32) * np.float32(LUX_UNIT)
+        lux = np.ascontiguousarray(light.lux_map.read()[..., :3])
         linear = luminance.read()[..., :3].astype(np.float32)
         cd_m2 = linear * np.float32(light.frame.luminance_per_unit)
         word = self.prepared.photometry

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +48,7 @@ class Prepared:
     surface: SurfaceModel
     ambient: Ambient
     lamps: Callable[[float], tuple[Lamp, ...]]
-    exposure: Exposure = Exposure()
+    exposure: Exposure = field(default_factory=Exposure)
     photometry: Photometry = "absolute"
     ignored: tuple[str, ...] = ()
 

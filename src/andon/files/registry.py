@@ -14,16 +14,18 @@ from andon.files.depth import DEPTH_READERS
 from andon.files.meshes import MESH_READERS
 from andon.files.pictures import PICTURE_READERS
 from andon.files.reader import Reader, choose_reader
+from andon.files.responses import RESPONSE_READERS
 
 __all__ = ["READERS", "Kind", "reader_for"]
 
-Kind = Literal["picture", "depth", "mesh", "camera"]
+Kind = Literal["picture", "depth", "mesh", "camera", "response"]
 
 READERS: tuple[Reader, ...] = (
     *PICTURE_READERS,
     *DEPTH_READERS,
     *MESH_READERS,
     *CAMERA_READERS,
+    *RESPONSE_READERS,
 )
 
 

@@ -38,6 +38,10 @@ VIEW_RECORD = HostStruct(
         ("world_down", "vec3f"),
         ("world_forward", "vec3f"),
         ("position", "vec3f"),
+        # pinhole: world ray per unit of depth = ray_origin + column·ray_column + row·ray_row
+        ("ray_origin", "vec3f"),
+        ("ray_column", "vec3f"),
+        ("ray_row", "vec3f"),
         ("focal", "vec2f"),  # pixels
         ("centre", "vec2f"),  # pixels, GPU convention: pixel centres at +0.5
         ("size", "vec2f"),  # pixels
@@ -55,7 +59,12 @@ VALID, OBJECT, MATERIAL_SHIFT = 1, 2, 8
 def pack_view(view: View, /) -> NDArray[Any]:
     """One `VIEW_RECORD`. The GPU's half-pixel shift is made here and nowhere else."""
     rotation = view.world_from_camera[:3, :3]
+    column = rotation[:, 0] / view.fx if view.fx else np.zeros(3)
+    row = rotation[:, 1] / view.fy if view.fy else np.zeros(3)
     return VIEW_RECORD.pack(
+        ray_origin=rotation[:, 2] - (view.cx + 0.5) * column - (view.cy + 0.5) * row,
+        ray_column=column,
+        ray_row=row,
         world_right=rotation[:, 0],
         world_down=rotation[:, 1],
         world_forward=rotation[:, 2],
@@ -92,7 +101,7 @@ def _octahedral(normal: NDArray[np.float64]) -> NDArray[np.uint32]:
     p = normal[..., :2] / np.abs(normal).sum(axis=-1, keepdims=True)
     sign = np.where(p >= 0, 1.0, -1.0)
     folded = (1 - np.abs(p[..., ::-1])) * sign
-    e = np.where(normal[..., 2:] >= 0, p, folded)
+    e: NDArray[np.float64] = np.where(normal[..., 2:] >= 0, p, folded)
     bits = np.rint(np.clip(e, -1, 1) * 32767).astype(np.int16).view(np.uint16).astype(np.uint32)
     return bits[..., 0] | (bits[..., 1] << np.uint32(16))
 
@@ -100,7 +109,8 @@ def _octahedral(normal: NDArray[np.float64]) -> NDArray[np.uint32]:
 def unpack_surface(packed: NDArray[np.uint32], view: View, /) -> dict[str, NDArray[Any]]:
     """depth, normal, reflectance, valid, is_object and material_id from a packed G-buffer."""
     halves = np.stack([packed[..., 1] & 0xFFFF, packed[..., 1] >> 16], axis=-1)
-    e = np.maximum(halves.astype(np.uint16).view(np.int16) / 32767.0, -1)
+    signed: NDArray[np.int16] = halves.astype(np.uint16).view(np.int16)
+    e: NDArray[np.float64] = np.maximum(np.asarray(signed, np.float64) / 32767.0, -1.0)
     z = 1 - np.abs(e).sum(axis=-1, keepdims=True)
     xy = np.where(z >= 0, e, (1 - np.abs(e[..., ::-1])) * np.where(e >= 0, 1.0, -1.0))
     normal = np.concatenate([xy, z], axis=-1)

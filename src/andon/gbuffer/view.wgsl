@@ -9,5 +9,5 @@ fn world_direction(direction: vec3f) -> vec3f {
 }
 
 fn world_position(pixel: vec2f, depth: f32) -> vec3f {
-  return view.position + world_direction(ray_planar(pixel)) * depth;
+  return view.position + world_ray(pixel) * depth;
 }

@@ -17,6 +17,11 @@ NO_ADAPTER = (
 )
 
 
+# wgpu falls back to OpenGL where there is no Vulkan, Metal or D3D12. It lacks what the rest relies
+# on (float render targets), so it counts as no adapter.
+OPENGL = "OpenGL"
+
+
 @dataclass(frozen=True)
 class Gpu:
     """An open device and what it says of itself.
@@ -45,7 +50,11 @@ def _request_adapter() -> Any | None:
     try:
         import wgpu
 
-        return wgpu.gpu.request_adapter_sync(power_preference="high-performance")
+        adapter = wgpu.gpu.request_adapter_sync(power_preference="high-performance")
+        if adapter.info["backend_type"] != OPENGL:
+            return adapter
+        others = wgpu.gpu.enumerate_adapters_sync()
+        return next((a for a in others if a.info["backend_type"] != OPENGL), None)
     except (RuntimeError, OSError, ImportError):  # wgpu's way of saying that there is none
         return None
 

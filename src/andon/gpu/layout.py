@@ -42,7 +42,10 @@ class HostStruct:
 
         A mat4x4f field holds the *transposed* matrix (columns first); `pack` does that.
         """
-        names, formats, offsets, end = [], [], [], 0
+        names: list[str] = []
+        formats: list[tuple[str, tuple[int, ...]]] = []
+        offsets: list[int] = []
+        end = 0
         for name, kind in self.fields:
             base, shape, alignment, size = _TYPES[kind]
             offset = -(-end // alignment) * alignment

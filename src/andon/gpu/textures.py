@@ -23,6 +23,7 @@ _FORMATS: dict[str, tuple[str, int]] = {
     "rgba32float": ("<f4", 4),
     "rgba32uint": ("<u4", 4),
     "r32float": ("<f4", 1),
+    "r32uint": ("<u4", 1),
     "rg32float": ("<f4", 2),
     "rg16float": ("<f2", 2),
     "depth32float": ("<f4", 1),
@@ -50,9 +51,7 @@ class Texture:
 
     def layer_view(self, layer: int) -> Any:
         """View of one layer, for rendering into."""
-        return self.handle.create_view(
-            dimension="2d", base_array_layer=layer, array_layer_count=1
-        )
+        return self.handle.create_view(dimension="2d", base_array_layer=layer, array_layer_count=1)
 
     def write(self, values: NDArray[Any], layer: int = 0) -> None:
         """Fills a layer with `values` (H, W, channels) or (H, W); cast to the texture's type."""

@@ -60,9 +60,9 @@ def _visit(
     above: tuple[str, ...],
     variants: Mapping[str, str],
 ) -> None:
-    replacement = variants.get(path, path)
-    text = "" if replacement.endswith(MODULE_SUFFIX) else replacement
-    path = path if text else replacement
+    text = variants.get(path, "")
+    if text.endswith(MODULE_SUFFIX):
+        path, text = text, ""
     if path in above:
         raise ValueError(f"WGSL import cycle: {' → '.join((*above, path))}")
     if path in seen:

@@ -54,7 +54,6 @@ class Placed(Table):
                     raise refusal("transform excludes it", key=key, remedy="keep one of them")
         return self
 
-
     def world_from_object(self) -> NDArray[np.float64]:
         """(4, 4) affine placement in metres."""
         if self.transform is not None:

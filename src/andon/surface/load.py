@@ -30,9 +30,9 @@ __all__ = ["load_surface", "object_geometry", "surface_of_depth", "surface_of_me
 
 Float = NDArray[np.float64]
 
-# Lift of receivers before a shadow is looked up: a millimetre for exact meshes, more than stereo
+# Lift of receivers before a shadow is looked up: float32 rounding for meshes, more than stereo
 # and structured light scatter for depth images, and twice the decimation's own error.
-MESH_BIAS_M = 1e-3
+MESH_BIAS_M = 2e-4
 DEPTH_BIAS_M = 5e-3
 DECIMATION_MARGIN = 2.0
 

@@ -49,8 +49,10 @@ class SurfaceModel:
     """
 
     real: Geometry = EMPTY_GEOMETRY
-    depth: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
-    normals: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    depth: Mapping[str, NDArray[np.float64]] = field(default_factory=dict[str, NDArray[np.float64]])
+    normals: Mapping[str, NDArray[np.float64]] = field(
+        default_factory=dict[str, NDArray[np.float64]]
+    )
     objects: Geometry = EMPTY_GEOMETRY
     occluder: Occluder = field(default_factory=lambda: Occluder(EMPTY_GEOMETRY, 0, 0.0))
     casters: Geometry = EMPTY_GEOMETRY

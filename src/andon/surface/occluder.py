@@ -49,7 +49,8 @@ def decimated(geometry: Geometry, max_triangles: int, eye: NDArray[Any]) -> Occl
         return Occluder(geometry, count, 0.0)
     import fast_simplification
 
-    points, triangles = fast_simplification.simplify(
+    simplify: Any = fast_simplification.simplify  # its annotations promise float64 only
+    points, triangles = simplify(
         np.ascontiguousarray(geometry.positions, np.float32),
         np.ascontiguousarray(geometry.triangles, np.int32),
         target_count=max_triangles,

@@ -1,6 +1,7 @@
 // Triangles into the G-buffer of a pinhole view.
 
 //!import andon/gbuffer/gbuffer.wgsl
+//!import andon/surface/plain.wgsl
 
 @group(0) @binding(0) var<uniform> view: ViewRecord;
 // Flags of the draw (valid, and object or not) in x.
@@ -14,8 +15,19 @@ struct Corner {
   @builtin(position) clip: vec4f,
   @location(0) normal: vec3f,
   @location(1) uv: vec2f,
-  @location(2) @interpolate(flat, first) material: u32,
+  @location(2) @interpolate(flat, first) material: vec4f,
+  // Packed normal, reflectance and flags of the whole triangle.
+  @location(3) @interpolate(flat, first) packed: vec3u,
 };
+
+fn pack_reflectance(reflectance: vec3f) -> u32 {
+  return pack4x8unorm(vec4f(sqrt(clamp(reflectance, vec3f(0.0), vec3f(1.0))), 0.0));
+}
+
+// The octahedral map needs no unit vector.
+fn towards(normal: vec3f, sight: vec3f) -> u32 {
+  return octahedral_encode(select(normal, -normal, dot(normal, sight) > 0.0));
+}
 
 @vertex fn corner(
   @location(0) position: vec3f,
@@ -26,37 +38,26 @@ struct Corner {
   let p = (view.camera_from_world * vec4f(position, 1.0)).xyz;
   let image = (view.focal * p.xy + (view.centre - 0.5 * view.size) * p.z) * 2.0 / view.size;
   // Reversed infinite depth: near/z, so that float32 keeps its relative precision far away.
-  return Corner(vec4f(image.x, -image.y, view.near_m, p.z), normal, uv, material);
+  let clip = vec4f(image.x, -image.y, view.near_m, p.z);
+  let look = materials[material];
+  let flags = draw_flags.x | (material << MATERIAL_SHIFT);
+  let sight = position - view.position;
+  return Corner(clip, normal, uv, look, vec3u(towards(normal, sight), pack_reflectance(look.xyz), flags));
+}
+
+// A triangle of one normal and one colour: all is known at its first corner.
+@fragment fn flat_surface(in: Corner) -> @location(0) vec4u {
+  return vec4u(bitcast<u32>(1.0 / in.clip.w), in.packed);
 }
 
 @fragment fn surface(in: Corner) -> @location(0) vec4u {
-  let depth = 1.0 / in.clip.w;
-  let sight = world_direction(ray_planar(in.clip.xy));
-  let normal = normalize(in.normal);
-  let facing = select(normal, -normal, dot(normal, sight) > 0.0);
-  let material = materials[in.material];
-  var reflectance = material.xyz;
-  if (material.w >= 0.0) { reflectance *= texel(in.uv, i32(material.w)); }
+  let sight = world_ray(in.clip.xy);
   return vec4u(
-    bitcast<u32>(depth),
-    octahedral_encode(facing),
-    pack4x8unorm(vec4f(sqrt(clamp(reflectance, vec3f(0.0), vec3f(1.0))), 0.0)),
-    draw_flags.x | (in.material << MATERIAL_SHIFT),
+    bitcast<u32>(1.0 / in.clip.w),
+    towards(in.normal, sight),
+    pack_reflectance(base_colour(in.material, in.uv)),
+    in.packed.z,
   );
-}
-
-// Bilinear and repeated, texel by texel, so that it agrees with the reference to the last bit that
-// matters: a hardware sampler has 8-bit weights.
-fn texel(uv: vec2f, layer: i32) -> vec3f {
-  let size = vec2i(textureDimensions(textures));
-  let p = uv * vec2f(size) - 0.5;
-  let corner = vec2i(floor(p));
-  let f = p - floor(p);
-  let a = ((corner % size) + size) % size;
-  let b = (a + 1) % size;
-  let top = mix(textureLoad(textures, a, layer, 0), textureLoad(textures, vec2i(b.x, a.y), layer, 0), f.x);
-  let low = mix(textureLoad(textures, vec2i(a.x, b.y), layer, 0), textureLoad(textures, b, layer, 0), f.x);
-  return mix(top, low, f.y).xyz;
 }
 
 // The base surface (a depth image, packed on the host) as background of virtual objects.

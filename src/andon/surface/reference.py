@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from andon.quantities import Geometry, Material, Surface
 from andon.rays import RayScene, face_normals
-from andon.spaces import View, rotate, transform_points
+from andon.spaces import View, transform_points
 from andon.surface.model import SurfaceModel
 from andon.surface.textures import sample_bilinear
 
@@ -71,7 +72,7 @@ def from_normals(normal: Float, view: View, /) -> Surface:
     """A normals-only surface: valid where the normal (H, W, 3) is, positions unknown."""
     surface = from_depth(np.ones(view.shape), normal, view)
     unknown = np.full((*view.shape, 3), np.nan)
-    return Surface(**{**vars(surface), "position": unknown})
+    return replace(surface, position=unknown)
 
 
 def trace(geometry: Geometry, view: View, /, *, is_object: bool) -> Surface:
@@ -147,12 +148,20 @@ def nearest(real: Surface, objects: Surface, /) -> Surface:
     """Pixel by pixel, whichever is nearer; objects stand in front of holes."""
     with np.errstate(invalid="ignore"):
         front = objects.valid & (~real.valid | (objects.depth < real.depth))
-    fields = {
-        name: np.where(front.reshape(*front.shape, *[1] * (value.ndim - 2)), other, value)
-        for name, value, other in (
-            (name, getattr(real, name), getattr(objects, name))
-            for name in vars(real)
-            if name != "view"
-        )
-    }
-    return Surface(**fields, view=real.view)
+
+    def choose(name: str) -> NDArray[Any]:
+        behind: NDArray[Any] = getattr(real, name)
+        mask = front.reshape(*front.shape, *[1] * (behind.ndim - 2))
+        return np.where(mask, getattr(objects, name), behind)
+
+    return Surface(
+        position=choose("position"),
+        normal=choose("normal"),
+        depth=choose("depth"),
+        valid=choose("valid"),
+        is_object=choose("is_object"),
+        reflectance=choose("reflectance"),
+        material_id=choose("material_id"),
+        emitted_cd_m2=choose("emitted_cd_m2"),
+        view=real.view,
+    )

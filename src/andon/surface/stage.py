@@ -32,6 +32,8 @@ from andon.surface.textures import TEXTURE_SIDE_PX
 __all__ = ["GpuSurface", "SurfaceStage"]
 
 SHADER = "andon/surface/raster.wgsl"
+# Integer division costs a software rasteriser more than all the rest of the shader.
+PLAIN, TEXTURED = "andon/surface/plain.wgsl", "andon/surface/textured.wgsl"
 VERTEX = np.dtype(
     [("position", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("material", "<u4")]
 )
@@ -73,6 +75,7 @@ class GpuSurface:
         if self.view.name in self.model.depth or self.model.is_distant_only:
             fields["material_id"] = np.where(is_object, fields["material_id"], -1)
         emitted = np.zeros_like(points.reflectance)
+        # Numbers of materials are the objects' own; the real surface's emission is in the photo.
         emitted[is_object] = self.emitted_cd_m2[fields["material_id"][is_object]]
         fields["normal"] = points.normal
         return replace(points, **fields, emitted_cd_m2=emitted)
@@ -113,8 +116,11 @@ class SurfaceStage:
         return not self._draws
 
     def _make_pipelines(self) -> None:
-        gpu, view = self.gpu, self.view
-        module = shader_module(gpu, SHADER, STRUCTS, projection_variant(view))
+        gpu, view, model = self.gpu, self.view, self.model
+        variants = projection_variant(view)
+        if any(m.texture is not None for m in (*model.real.materials, *model.objects.materials)):
+            variants |= {PLAIN: TEXTURED}
+        module = shader_module(gpu, SHADER, STRUCTS, variants)
         self._depth = make_texture(gpu, "depth32float", view.width, view.height)
         attributes = [
             {"format": "float32x3", "offset": 0, "shader_location": 0},
@@ -130,7 +136,10 @@ class SurfaceStage:
         table = gpu.device.create_buffer(size=16, usage=_storage_usage())
         background = self._background or make_texture(gpu, "rgba32uint", 1, 1)
         layout = self.bind(flags, table, empty, background)
-        self.pipeline = self._pipeline(layout, module, "corner", "surface", buffers, "greater")
+        self.pipelines = {
+            entry: self._pipeline(layout, module, "corner", entry, buffers, "greater")
+            for entry in ("surface", "flat_surface")
+        }
         self._fill: Any = None
         if self._background is not None:
             self._fill = self._pipeline(layout, module, "fullscreen", "background", [], "always")
@@ -194,8 +203,8 @@ class SurfaceStage:
             render.set_pipeline(self._fill)
             render.set_bind_group(0, self._fill_group.group)
             render.draw(3)
-        render.set_pipeline(self.pipeline)
         for draw in self._draws:
+            render.set_pipeline(self.pipelines[draw.entry_point])
             draw.encode(render)
         render.end()
         return self.surface
@@ -210,6 +219,7 @@ class _Draw:
         gpu = stage.gpu
         vertices, indices = vertex_arrays(geometry)
         self.count = indices.size
+        self.entry_point = "flat_surface" if is_flat(geometry) else "surface"
         device, usage = gpu.device, wgpu.BufferUsage
         self.vertices = device.create_buffer_with_data(data=vertices, usage=usage.VERTEX)
         self.indices = device.create_buffer_with_data(data=indices, usage=usage.INDEX)
@@ -231,6 +241,16 @@ def _storage_usage() -> int:
     import wgpu
 
     return wgpu.BufferUsage.STORAGE
+
+
+def is_flat(geometry: Geometry, /) -> bool:
+    """Every triangle has one normal and one colour."""
+    if geometry.uvs is not None and any(m.texture is not None for m in geometry.materials):
+        return False
+    if geometry.normals is None:
+        return True
+    corners = geometry.normals[geometry.triangles]
+    return bool((corners == corners[:, :1]).all())
 
 
 def vertex_arrays(geometry: Geometry, /) -> tuple[NDArray[Any], NDArray[np.uint32]]:

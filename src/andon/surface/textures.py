@@ -43,7 +43,9 @@ def _linear_square(texture: NDArray[Any]) -> NDArray[np.float32]:
     larger = min(texture.shape[:2]) > TEXTURE_SIDE_PX
     side = (TEXTURE_SIDE_PX, TEXTURE_SIDE_PX)
     method = cv2.INTER_AREA if larger else cv2.INTER_LINEAR
-    return cv2.resize(np.asarray(linear, np.float32), side, interpolation=method)
+    return np.asarray(
+        cv2.resize(np.asarray(linear, np.float32), side, interpolation=method), np.float32
+    )
 
 
 def sample_bilinear(texture: NDArray[Any], uv: Float, /) -> Float:

@@ -61,7 +61,7 @@ def _materials(generator: Generator) -> dict[str, Material]:
     }
     tints = generator.uniform(0.92, 1.08, (len(base), 3))
     materials: dict[str, Material] = {}
-    for (name, reflectance), tint in zip(base.items(), tints):
+    for (name, reflectance), tint in zip(base.items(), tints, strict=True):
         red, green, blue = (np.array(reflectance) * tint).tolist()
         materials[name] = Material(name=name, reflectance=(red, green, blue))
     return materials
@@ -185,7 +185,9 @@ def _round(detail: float, generator: Generator, paint: dict[str, Material]) -> l
             ),
             paint["sage"],
         ),
-        Part(lathe(pillar_radius, pillar_height, cuts(36, 5)).moved((1.8, 0, -1.4)), paint["linen"]),
+        Part(
+            lathe(pillar_radius, pillar_height, cuts(36, 5)).moved((1.8, 0, -1.4)), paint["linen"]
+        ),
         Part(
             ring.moved((1.75, 0.26, 0.7), pitch_degrees=33, yaw_degrees=generator.uniform(0, 90)),
             paint["brick"],

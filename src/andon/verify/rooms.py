@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.quantities import LUMINANCE_WEIGHTS, Geometry, Material
+from andon.quantities import LUMINANCE_WEIGHTS, Geometry
 from andon.spaces import View, look_at
 from andon.verify.furniture import Part, room_parts
 from andon.verify.solids import Solid, facet_normals
@@ -68,9 +68,7 @@ class RoomLamp:
         return self.intensity_cd * np.array(self.colour)
 
 
-def furnished_room(
-    min_triangles: int = 12_000, seed: int = 7, *, smooth: bool = False
-) -> Geometry:
+def furnished_room(min_triangles: int = 12_000, seed: int = 7, *, smooth: bool = False) -> Geometry:
     """A furnished room of 5 × 3 × 4 m with at least `min_triangles` triangles.
 
     Parameters
@@ -104,7 +102,10 @@ def _joined(parts: list[Part], smooth: bool) -> Geometry:
     return Geometry(
         positions=np.concatenate([solid.positions for solid, _ in pieces]),
         triangles=np.concatenate(
-            [solid.triangles + np.int32(start) for (solid, _), start in zip(pieces, starts)]
+            [
+                solid.triangles + np.int32(start)
+                for (solid, _), start in zip(pieces, starts[:-1], strict=True)
+            ]
         ),
         normals=np.concatenate([n for _, n in pieces if n is not None]) if smooth else None,
         material_ids=np.concatenate(
@@ -206,7 +207,9 @@ def _spread(points: Float) -> Float:
 def _in_free_air(room: Geometry, point: Float) -> bool:
     """Inside the shell (winding −1), in no object (each adds +1) and clear of every surface."""
     corners = room.positions[room.triangles] - point
-    near = (corners.min(axis=1) < CLEAR_M).all(axis=1) & (corners.max(axis=1) > -CLEAR_M).all(axis=1)
+    near = (corners.min(axis=1) < CLEAR_M).all(axis=1) & (corners.max(axis=1) > -CLEAR_M).all(
+        axis=1
+    )
     return _distance(corners[near]) >= CLEAR_M and abs(_winding(corners) + 1) < 0.5
 
 
@@ -239,5 +242,3 @@ def _distance(corners: Float) -> float:
     foot = height[:, None, None] * normals[:, None, :] - corners
     inside = (np.einsum("ijk,ijk->ij", np.cross(edges, foot), normals[:, None, :]) >= 0).all(axis=1)
     return float(min(nearest, np.abs(height[inside]).min(initial=np.inf)))
-
-

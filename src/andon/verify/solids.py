@@ -181,9 +181,7 @@ def torus(ring_radius: float, tube_radius: float, divisions: tuple[int, int]) ->
     u = np.linspace(0, 2 * np.pi, around + 1)[:, None]
     v = np.linspace(0, 2 * np.pi, through + 1)[None, :]
     out = ring_radius + tube_radius * np.cos(v)
-    grid = np.stack(
-        [out * np.cos(u), tube_radius * np.sin(v) + 0 * u, -out * np.sin(u)], axis=-1
-    )
+    grid = np.stack([out * np.cos(u), tube_radius * np.sin(v) + 0 * u, -out * np.sin(u)], axis=-1)
     triangles = _grid_triangles(around, through)[:, ::-1]
     return Solid(*weld(grid.reshape(-1, 3), triangles), curved=True)
 
@@ -195,7 +193,9 @@ def lathe(radii: ArrayLike, heights: ArrayLike, segments: int) -> Solid:
     """
     out = np.asarray(radii, np.float64)[None, :, None]
     turn = np.linspace(0, 2 * np.pi, segments + 1)[:, None, None]
-    up = np.broadcast_to(np.asarray(heights, np.float64)[None, :, None], (segments + 1, out.size, 1))
+    up = np.broadcast_to(
+        np.asarray(heights, np.float64)[None, :, None], (segments + 1, out.size, 1)
+    )
     grid = np.concatenate([out * np.cos(turn), up, -out * np.sin(turn)], axis=-1)
     triangles = _grid_triangles(segments, out.size - 1)[:, ::-1]
     return Solid(*weld(grid.reshape(-1, 3), triangles), curved=True)

@@ -12,7 +12,8 @@ from __future__ import annotations
 
 import io
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -32,7 +33,6 @@ Curve = Callable[[Float], Float]
 
 # The profile connection space's white, D50 (ICC.1:2022, 7.2.16), as chromaticities.
 D50_XY = (0.34570, 0.35854)
-CMS_ERRORS = (OSError, ValueError, TypeError)  # what LittleCMS's binding raises
 BLOCK_ROWS = 128  # at once in float64, so that a 16-bit panorama does not become five of them
 PARAMETERS = {0: 1, 1: 3, 2: 4, 3: 5, 4: 7}  # parametricCurveType: function → numbers
 
@@ -45,15 +45,23 @@ def _broken(why: str, file: str) -> InputError:
     )
 
 
+@contextmanager
+def _guarded(file: str) -> Generator[None, None, None]:
+    from PIL import ImageCms
+
+    try:
+        yield
+    except (OSError, ValueError, TypeError, ImageCms.PyCMSError) as error:
+        raise _broken(str(error)[:120], file) from error
+
+
 def open_profile(profile: bytes, file: str) -> tuple[Any, str]:
     """The profile as LittleCMS opened it, and its name; a broken one is an `InputError`."""
     from PIL import ImageCms
 
-    try:
+    with _guarded(file):
         opened = ImageCms.ImageCmsProfile(io.BytesIO(profile))
         return opened, (ImageCms.getProfileDescription(opened) or "").strip() or "unnamed"
-    except CMS_ERRORS as error:
-        raise _broken(str(error)[:120], file) from error
 
 
 def convert_8bit(image: Image.Image, profile: Any, file: str) -> Image.Image:
@@ -62,8 +70,8 @@ def convert_8bit(image: Image.Image, profile: Any, file: str) -> Image.Image:
 
     if image.mode == "L" and profile.profile.xcolor_space.strip() == "RGB":
         image = image.convert("RGB")  # against the standards, but common
-    target = cast("Any", ImageCms.createProfile("sRGB"))  # pyright: ignore[reportUnknownMemberType]
-    try:
+    with _guarded(file):
+        target = cast("Any", ImageCms.createProfile("sRGB"))  # pyright: ignore[reportUnknownMemberType]
         # Relative colorimetric: what matters is the light, so white maps to white and nothing
         # inside the gamut is moved.
         converted = ImageCms.profileToProfile(
@@ -73,8 +81,6 @@ def convert_8bit(image: Image.Image, profile: Any, file: str) -> Image.Image:
             renderingIntent=ImageCms.Intent.RELATIVE_COLORIMETRIC,
             outputMode="RGB",
         )
-    except (*CMS_ERRORS, ImageCms.PyCMSError) as error:
-        raise _broken(str(error)[:120], file) from error
     if converted is None:
         raise _broken("no conversion", file)
     return converted

@@ -5,3 +5,7 @@ fn ray_planar(pixel: vec2f) -> vec3f {
   let theta = length(p);
   return vec3f(p * select(1.0, sin(theta) / theta, theta > 1e-6), cos(theta));
 }
+
+fn world_ray(pixel: vec2f) -> vec3f {
+  return world_direction(ray_planar(pixel));
+}

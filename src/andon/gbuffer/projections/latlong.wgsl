@@ -7,3 +7,7 @@ fn ray_planar(pixel: vec2f) -> vec3f {
   let elevation = (0.5 - pixel.y / view.size.y) * PI;
   return vec3f(cos(elevation) * sin(azimuth), -sin(elevation), cos(elevation) * cos(azimuth));
 }
+
+fn world_ray(pixel: vec2f) -> vec3f {
+  return world_direction(ray_planar(pixel));
+}

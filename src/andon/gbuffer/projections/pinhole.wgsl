@@ -3,3 +3,8 @@
 fn ray_planar(pixel: vec2f) -> vec3f {
   return vec3f((pixel - view.centre) / view.focal, 1.0);
 }
+
+// The same in world axes, as three products: what every pixel of every frame does.
+fn world_ray(pixel: vec2f) -> vec3f {
+  return view.ray_origin + pixel.x * view.ray_column + pixel.y * view.ray_row;
+}

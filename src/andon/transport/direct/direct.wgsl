@@ -12,12 +12,13 @@
 @group(1) @binding(3) var planes: texture_depth_2d_array;
 
 // Two surfaces closer than this share of their distance are one: float32 rounding of a depth map.
-const SAME_DEPTH: f32 = 2e-4;
+const SAME_DEPTH: f32 = 2e-5;
 
 // A shadow query: what a filter needs to ask the map at one texel. `reach` = P − lamp,
 // `away` = normal·reach < 0, lifted by the bias.
 struct Receiver {
   lamp: i32,
+  layer: i32,
   reach: vec3f,
   normal: vec3f,
   away: f32,
@@ -26,25 +27,23 @@ struct Receiver {
 // Is the receiver's plane, where it passes the centre of the texel, no farther than what the map
 // holds there?
 fn paraboloid_texel_lit(point: Receiver, texel: vec2i) -> bool {
-  let size = lamps[point.lamp].map_size;
   let front = point.reach.z >= 0.0;
-  let u = (vec2f(texel) + 0.5) * (2.0 / size) - 1.0;
+  let u = (vec2f(texel) + 0.5) * (2.0 / MAP_SIZE) - 1.0;
   let centre = paraboloid_direction(u, select(-1.0, 1.0, front));
-  let layer = max(lamps[point.lamp].shadow_layer, 0) + select(1, 0, front);
+  let layer = max(point.layer, 0) + select(1, 0, front);
   let stored = textureLoad(paraboloids, texel, layer, 0).x;
   // distance of the plane along `centre` = away·(1+|u|²)/(normal·centre), both negative.
   return point.away * (1.0 + dot(u, u)) >= stored * (1.0 + SAME_DEPTH) * dot(point.normal, centre);
 }
 
-fn point_illuminance(lamp: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
+fn point_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
   let reach = position - lamps[lamp].position;
   let inverse = inverseSqrt(dot(reach, reach));
   let distance = dot(reach, reach) * inverse;
   let away = dot(normal, reach);
-  let size = lamps[lamp].map_size;
-  let place = reach.xy * (0.5 * size / (distance + abs(reach.z))) + 0.5 * size;
-  let seen = paraboloid_share(Receiver(lamp, reach, normal, away + bias), place);
-  let lit = select(seen, 1.0, lamps[lamp].shadow_layer < 0);
+  let place = reach.xy * (0.5 * MAP_SIZE / (distance + abs(reach.z))) + 0.5 * MAP_SIZE;
+  let seen = paraboloid_share(Receiver(lamp, layer, reach, normal, away + bias), place);
+  let lit = select(seen, 1.0, layer < 0);
   return lamps[lamp].light * (max(-away, 0.0) * inverse * inverse * inverse * lit);
 }
 
@@ -53,53 +52,53 @@ fn cone_ramp(lamp: i32, cosine: f32) -> f32 {
   return ramp * ramp;
 }
 
-fn wide_spot_illuminance(lamp: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
+fn wide_spot_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
   let reach = position - lamps[lamp].position;
   let cosine = dot(lamps[lamp].axis, reach) * inverseSqrt(dot(reach, reach));
-  return point_illuminance(lamp, position, normal, bias) * cone_ramp(lamp, cosine);
+  return point_illuminance(lamp, layer, position, normal, bias) * cone_ramp(lamp, cosine);
 }
 
 fn spot_texel_lit(point: Receiver, texel: vec2i) -> bool {
   let record = lamps[point.lamp];
-  let centre = ((vec2f(texel) + 0.5) * (2.0 / record.map_size) - 1.0) * record.half_width;
+  let centre = ((vec2f(texel) + 0.5) * (2.0 / MAP_SIZE) - 1.0) * record.half_width;
   let direction = record.axis + record.right * centre.x + record.down * centre.y;
-  let stored = textureLoad(planes, texel, max(record.shadow_layer, 0), 0);
+  let stored = textureLoad(planes, texel, max(point.layer, 0), 0);
   // depth of the plane = away/(normal·direction); the map holds near/depth.
   return point.away * stored >= direct.near_m * (1.0 + SAME_DEPTH) * dot(point.normal, direction);
 }
 
-fn spot_illuminance(lamp: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
+fn spot_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
   let record = lamps[lamp];
   let reach = position - record.position;
   let inverse = inverseSqrt(dot(reach, reach));
   let away = dot(normal, reach);
   let along = dot(record.axis, reach);
   let tangent = vec2f(dot(record.right, reach), dot(record.down, reach)) / along;
-  let place = (tangent / record.half_width * 0.5 + 0.5) * record.map_size;
-  let seen = spot_share(Receiver(lamp, reach, normal, away + bias), place);
-  let lit = cone_ramp(lamp, along * inverse) * select(seen, 1.0, record.shadow_layer < 0);
+  let place = (tangent / record.half_width * 0.5 + 0.5) * MAP_SIZE;
+  let seen = spot_share(Receiver(lamp, layer, reach, normal, away + bias), place);
+  let lit = cone_ramp(lamp, along * inverse) * select(seen, 1.0, layer < 0);
   return record.light * (max(-away, 0.0) * inverse * inverse * inverse * lit);
 }
 
 fn directional_texel_lit(point: Receiver, texel: vec2i) -> bool {
   let record = lamps[point.lamp];
-  let centre = ((vec2f(texel) + 0.5) * (2.0 / record.map_size) - 1.0) * record.half_width;
+  let centre = ((vec2f(texel) + 0.5) * (2.0 / MAP_SIZE) - 1.0) * record.half_width;
   let place = vec2f(dot(record.right, point.reach), dot(record.down, point.reach));
   let across = vec2f(dot(record.right, point.normal), dot(record.down, point.normal));
   let facing = min(dot(record.axis, point.normal), -1e-4);
   // `away` is the bias here: parallel light has no distance.
   let depth = dot(record.axis, point.reach) + (point.away - dot(across, centre - place)) / facing;
-  let stored = 0.5 - textureLoad(planes, texel, max(record.shadow_layer, 0), 0);
+  let stored = 0.5 - textureLoad(planes, texel, max(point.layer, 0), 0);
   return depth <= (stored + 1e-6) * record.depth_range_m;
 }
 
-fn directional_illuminance(lamp: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
+fn directional_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
   let record = lamps[lamp];
   let reach = position - record.position;
   let at = vec2f(dot(record.right, reach), dot(record.down, reach)) / record.half_width;
-  let place = (at * 0.5 + 0.5) * record.map_size;
-  let seen = directional_share(Receiver(lamp, reach, normal, bias), place);
-  let beyond = record.shadow_layer < 0 || any(abs(at) > vec2f(1.0));
+  let place = (at * 0.5 + 0.5) * MAP_SIZE;
+  let seen = directional_share(Receiver(lamp, layer, reach, normal, bias), place);
+  let beyond = layer < 0 || any(abs(at) > vec2f(1.0));
   let lit = select(seen, 1.0, beyond);
   return record.light * (max(-dot(record.axis, normal), 0.0) * lit);
 }

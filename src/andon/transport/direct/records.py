@@ -47,7 +47,6 @@ LAMP_RECORD = HostStruct(
         ("half_width", "f32"),  # tangent of the half-angle, or metres
         ("down", "vec3f"),
         ("depth_range_m", "f32"),  # directional
-        ("map_size", "f32"),
     ),
 )
 
@@ -130,12 +129,11 @@ def pack_lamps(
     groups: Sequence[Sequence[Lamp]],
     layers: dict[str, int],
     frames: dict[str, PlanarFrame],
-    map_sizes: dict[str, int],
     /,
 ) -> NDArray[Any]:
     """`LAMP_RECORD`s in the order of `groups`; `layers` and `frames` are keyed by lamp name."""
     records = [
-        _pack(lamp, layers.get(lamp.name, -1), frames.get(lamp.name), map_sizes.get(lamp.name, 1))
+        _pack(lamp, layers.get(lamp.name, -1), frames.get(lamp.name))
         for group in groups
         for lamp in group
     ]
@@ -146,8 +144,8 @@ def pack_lamps(
     return table
 
 
-def _pack(lamp: Lamp, layer: int, frame: PlanarFrame | None, size: int) -> NDArray[Any]:
-    values: dict[str, Any] = {"shadow_layer": layer, "map_size": size}
+def _pack(lamp: Lamp, layer: int, frame: PlanarFrame | None) -> NDArray[Any]:
+    values: dict[str, Any] = {"shadow_layer": layer}
     match lamp:
         case PointLamp():
             values |= {"position": lamp.position_m, "light": lamp.intensity_cd}

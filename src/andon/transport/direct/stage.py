@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,16 +30,21 @@ SUM = "andon/transport/direct/sum.wgsl"
 GROUPS = ("point", "wide_spot", "spot", "directional", "hemisphere")
 
 
-def sum_of_lamps(counts: Sequence[int], /) -> str:
-    """WGSL of `illuminance` for just these numbers of lamps of each group, without loops."""
-    lines = ["fn illuminance(position: vec3f, normal: vec3f, bias: f32) -> vec3f {"]
+def sum_of_lamps(groups: Sequence[Sequence[Lamp]], layers: Mapping[str, int], size: int, /) -> str:
+    """WGSL of `illuminance` for just these lamps: no loops, no branches, constants as constants.
+
+    `layers` are those of the shadow maps by lamp name, `size` their texels along a side.
+    """
+    lines = [f"const MAP_SIZE: f32 = {float(size)};"]
+    lines.append("fn illuminance(position: vec3f, normal: vec3f, bias: f32) -> vec3f {")
     lines.append("  var total = vec3f(0.0);")
-    first = 0
-    for group, count in zip(GROUPS, counts, strict=True):
-        place = "normal" if group == "hemisphere" else "position, normal, bias"
-        for lamp in range(first, first + count):
-            lines.append(f"  total += {group}_illuminance({lamp}, {place});")
-        first += count
+    lamp = 0
+    for name, group in zip(GROUPS, groups, strict=True):
+        place = "normal" if name == "hemisphere" else "position, normal, bias"
+        for member in group:
+            layer = "" if name == "hemisphere" else f"{layers.get(member.name, -1)}, "
+            lines.append(f"  total += {name}_illuminance({lamp}, {layer}{place});")
+            lamp += 1
     return "\n".join([*lines, "  return total;", "}"])
 
 
@@ -69,7 +74,7 @@ class DirectStage:
         self.maps = ShadowMaps(gpu, casters, lamps)
         groups = sorted_lamps(lamps)
         self.variants = {
-            SUM: sum_of_lamps([len(group) for group in groups]),
+            SUM: sum_of_lamps(groups, self.maps.layers, self.maps.size),
             FILTER.format("none"): FILTER.format(self.maps.filter),
         }
         self._lamps = uniform_buffer(gpu, LAMP_RECORD.dtype.itemsize * MAX_LAMPS, "lamps")
@@ -89,8 +94,7 @@ class DirectStage:
         """Brings maps and records to `lamps` (same names as at the start); returns maps redrawn."""
         moved = self.maps.update(encoder, lamps)
         groups = sorted_lamps(lamps)
-        sizes = dict.fromkeys(self.maps.layers, self.maps.size)
-        records = pack_lamps(groups, self.maps.layers, self.maps.frames, sizes)
+        records = pack_lamps(groups, self.maps.layers, self.maps.frames)
         if len(records):
             write_buffer(self.gpu, self._lamps, records)
         counts = {

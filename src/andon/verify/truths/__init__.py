@@ -6,12 +6,15 @@ has none, and a reference of our own shares our misunderstandings. Each answers 
 =============== ============================= ========================== =======================
 oracle          question                      known error                cost (two cores)
 =============== ============================= ========================== =======================
-`radiance`      lux at a point, any lamps,    ≤ 1e-6 relative for point  ~10 µs per point, lamp
-                with or without bounces       lamps; area lamps as fine
-                                              as they are cut
-`embree`        does the point see the lamp   float32 rays: wrong only   ~1 µs per point, lamp
-                                              within 0.1 mm of an edge
+`radiance`      lux at a point, any lamps,    ≤ 5e-5 relative for point  1 µs per point and lamp
+                with or without bounces       lamps at ≥ 0.5 m; area
+                                              lamps as fine as cut
+`embree`        does the point see the lamp   float32 rays from 0.1 mm   0.2 µs per point and
+                                              above the surface          lamp
 =============== ============================= ========================== =======================
+
+The two agree: over the furnished room's picture with four lamps, Radiance and the closed form with
+Embree's shadows differ by more than 0.1 % in 0.02 % of pixels, all at shadow edges.
 
 Alternatives: Mitsuba 3 (a path tracer: noise of 1 % needs 10⁴ paths per point, and its wheel is a
 test dependency only); trimesh's ray casting (Embree again, but 2.4 s to import).

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -27,20 +28,16 @@ class Visibility:
     """
 
     def __init__(self, geometry: Geometry) -> None:
-        from embreex.mesh_construction import (  # pyright: ignore[reportMissingTypeStubs]
-            TriangleMesh,
-        )
-        from embreex.rtcore_scene import EmbreeScene  # pyright: ignore[reportMissingTypeStubs]
-
         if len(geometry.triangles) == 0:
             raise InputError("must have at least one triangle", field="geometry")
-        scene: Any = EmbreeScene(robust=True)
+        # embreex is compiled and brings no types.
+        scene: Any = import_module("embreex.rtcore_scene").EmbreeScene(robust=True)
         positions = np.ascontiguousarray(geometry.positions, np.float32)
         # The mesh has to outlive the queries: the scene only borrows its buffers.
-        self._mesh: Any = TriangleMesh(
+        self._mesh: Any = import_module("embreex.mesh_construction").TriangleMesh(
             scene, positions, np.ascontiguousarray(geometry.triangles, np.int32)
         )
-        self._scene = scene
+        self._scene: Any = scene
 
     def visible(
         self, points: NDArray[Any], normals: NDArray[Any], lamp_position: ArrayLike, /

@@ -17,7 +17,7 @@ import shutil
 import subprocess
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError, MachineError
 from andon.quantities import Geometry
+from andon.spaces import View
 from andon.verify.truths.sources import (
     LUMENS_PER_WATT,
     SPOT_CAL,
@@ -51,6 +52,7 @@ __all__ = [
     "Timing",
     "irradiance",
     "time_picture",
+    "time_view",
 ]
 
 Float = NDArray[np.float64]
@@ -143,6 +145,7 @@ class RadianceScene:
         ambient_divisions: int = 1024,
         ambient_accuracy: float = 0.1,
         source_subdivision: float = 0.0,
+        lift_m: float = LIFT_M,
         threads: int | None = None,
     ) -> Float:
         """(n, 3) lux on surfaces at `points` (n, 3) metres that face `normals` (n, 3).
@@ -153,26 +156,46 @@ class RadianceScene:
         ambient_divisions, ambient_accuracy : ``-ad`` and ``-aa``, used with bounces only.
         source_subdivision : ``-ds``, cuts area lamps down to this share of their distance;
             0 takes each triangle as one sample, right for fine meshes.
+        lift_m : height above the points at which light is measured; more than their error, or
+            they lie in their own shadow.
         threads : processes of `rtrace`; None takes all cores.
         """
+        return self._trace(
+            ["-I"],
+            _rays(points, normals, lift_m),
+            {
+                "ab": ambient_bounces,
+                "ad": ambient_divisions,
+                "as": ambient_divisions // 4,
+                "aa": ambient_accuracy,
+                "ds": source_subdivision,
+                "n": threads or os.cpu_count() or 1,
+            },
+        )
+
+    def luminance(self, view: View, /, *, threads: int | None = None) -> Float:
+        """(H, W, 3) cd/m² of what the view sees in direct light: one ray per pixel centre.
+
+        Surfaces are flat and diffuse (``Material.reflectance``); lamps do not show.
+        """
+        return self.luminance_along(_view_rays(view), threads=threads).reshape(*view.shape, 3)
+
+    def luminance_along(self, rays: Float, /, *, threads: int | None = None) -> Float:
+        """(n, 3) cd/m² along rays (n, 6): an origin in metres and a unit direction each."""
+        # -dv-: a ray that meets a lamp itself goes dark.
+        return self._trace(["-dv-"], rays, {"ab": 0, "ds": 0, "n": threads or os.cpu_count() or 1})
+
+    def _trace(self, mode: list[str], rays: Float, options: dict[str, float]) -> Float:
+        """(n, 3) photometric answers of `rtrace` to rays (n, 6)."""
         if self._folder is None:
             raise InputError("must be entered before it is asked", field="RadianceScene")
-        rays = _rays(points, normals)
         if len(rays) == 0:
             return np.empty((0, 3))
-        options = {
-            "ab": ambient_bounces,
-            "ad": ambient_divisions,
-            "as": ambient_divisions // 4,
-            "aa": ambient_accuracy,
-            "ds": source_subdivision,
-            "n": threads or os.cpu_count() or 1,
-        }
-        # -dr 0: no mirrors, so no virtual lamps; -lw 0 -lr: only bounces are counted down.
-        fixed = "-I -h -w -fd -dt 0 -dc 1 -dj 0 -dr 0".split()
+        # Every lamp is tested, at its centre; -dr 0: there are no mirrors, so no virtual lamps.
+        fixed = ["-h", "-w", "-fd", "-dt", "0", "-dc", "1", "-dj", "0", "-dr", "0"]
         chosen = [word for key, value in options.items() for word in (f"-{key}", str(value))]
         octree = str(Path(self._folder.name) / "scene.oct")
-        answer = _run("rtrace", [*fixed, *chosen, octree], rays.tobytes(), self._limit)
+        answer = _run("rtrace", [*mode, *fixed, *chosen, octree], rays.tobytes(), self._limit)
         watts = np.frombuffer(answer, np.float64)
         if watts.size != 3 * len(rays):
             raise MachineError(
@@ -206,17 +229,42 @@ def time_picture(
     repeats: int = 1,
     threads: int | None = None,
 ) -> Timing:
-    """How long Radiance takes for the direct light of a picture: one (n, 3) point per pixel."""
+    """How long Radiance takes for the direct light at (n, 3) points, one per pixel.
+
+    What each pixel sees is known beforehand; `time_view` has Radiance find it.
+    """
+    return Timing(
+        _timed(lambda: scene.irradiance(points, normals, threads=threads), repeats), len(points)
+    )
+
+
+def time_view(
+    scene: RadianceScene, view: View, /, *, repeats: int = 1, threads: int | None = None
+) -> Timing:
+    """How long Radiance takes for the whole picture: surfaces, direct light, luminance."""
+    rays = _view_rays(view)  # not Radiance's work, so outside its time
+    return Timing(_timed(lambda: scene.luminance_along(rays, threads=threads), repeats), len(rays))
+
+
+def _timed(ask: Callable[[], object], repeats: int) -> tuple[float, ...]:
     seconds: list[float] = []
     for _ in range(repeats):
         start = time.perf_counter()
-        scene.irradiance(points, normals, threads=threads)
+        ask()
         seconds.append(time.perf_counter() - start)
-    return Timing(tuple(seconds), len(points))
+    return tuple(seconds)
 
 
-def _rays(points: NDArray[Any], normals: NDArray[Any]) -> Float:
-    """(n, 6) float64: origins moved to where `rtrace` evaluates `LIFT_M` above, and normals."""
+def _view_rays(view: View) -> Float:
+    """(H·W, 6) float64: the camera's place and the unit direction of each pixel, row by row."""
+    origin, directions = view.rays_world()
+    rays = np.empty((view.width * view.height, 6))
+    rays[:, :3], rays[:, 3:] = origin, directions.reshape(-1, 3)
+    return rays
+
+
+def _rays(points: NDArray[Any], normals: NDArray[Any], lift_m: float) -> Float:
+    """(n, 6) float64: origins moved to where `rtrace` measures `lift_m` above, and normals."""
     origins, facing = np.asarray(points, np.float64), np.asarray(normals, np.float64)
     for field, values in (("points", origins), ("normals", facing)):
         if values.ndim != 2 or values.shape[1] != 3 or not np.isfinite(values).all():
@@ -228,7 +276,7 @@ def _rays(points: NDArray[Any], normals: NDArray[Any]) -> Float:
         # A zero direction tells rtrace to flush its output, it would give no number at all.
         raise InputError("must not be zero", field="normals")
     facing = facing / length
-    return np.concatenate([origins - (RTRACE_LIFT_M - LIFT_M) * facing, facing], axis=1)
+    return np.concatenate([origins - (RTRACE_LIFT_M - lift_m) * facing, facing], axis=1)
 
 
 def _geometry_text(geometry: Geometry) -> str:
@@ -243,7 +291,7 @@ def _geometry_text(geometry: Geometry) -> str:
                 field=f"materials[{number}].texture",
                 remedy="give the surface one reflectance",
             )
-        red, green, blue = material.reflectance
+        red, green, blue = map(float, material.reflectance)
         text += f"void plastic m{number} 0 0 5 {red!r} {green!r} {blue!r} 0 0\n"
         text += triangles_text(corners[ids == number], f"m{number}")
     return text

@@ -116,7 +116,8 @@ def _use(info: Tree) -> TextureUse:
     rotation = extension.get("rotation")
     angle = rotation.number() if rotation else 0.0
     cos, sin = float(np.cos(angle)), float(np.sin(angle))
-    # translation · rotation · scale, as in the extension's text
+    # translation · rotation · scale; the rotation is counter-clockwise as seen, with v down, as
+    # the viewers have it (the extension's GLSL, read by columns, would turn the other way).
     rows = (
         (cos * scale[0], sin * scale[1], offset[0]),
         (-sin * scale[0], cos * scale[1], offset[1]),

@@ -1,7 +1,7 @@
 // Shadows blended over one texel: four texels decide, each for itself, weighted bilinearly.
 
-fn texel_corner(place: vec2f, lamp: i32) -> vec2i {
-  return clamp(vec2i(floor(place - 0.5)), vec2i(0), vec2i(i32(lamps[lamp].map_size) - 2));
+fn texel_corner(place: vec2f) -> vec2i {
+  return clamp(vec2i(floor(place - 0.5)), vec2i(0), vec2i(i32(MAP_SIZE) - 2));
 }
 
 fn blend(lit: vec4<bool>, place: vec2f, corner: vec2i) -> f32 {
@@ -12,7 +12,7 @@ fn blend(lit: vec4<bool>, place: vec2f, corner: vec2i) -> f32 {
 }
 
 fn paraboloid_share(point: Receiver, place: vec2f) -> f32 {
-  let corner = texel_corner(place, point.lamp);
+  let corner = texel_corner(place);
   return blend(vec4<bool>(
     paraboloid_texel_lit(point, corner),
     paraboloid_texel_lit(point, corner + vec2i(1, 0)),
@@ -22,7 +22,7 @@ fn paraboloid_share(point: Receiver, place: vec2f) -> f32 {
 }
 
 fn spot_share(point: Receiver, place: vec2f) -> f32 {
-  let corner = texel_corner(place, point.lamp);
+  let corner = texel_corner(place);
   return blend(vec4<bool>(
     spot_texel_lit(point, corner),
     spot_texel_lit(point, corner + vec2i(1, 0)),
@@ -32,7 +32,7 @@ fn spot_share(point: Receiver, place: vec2f) -> f32 {
 }
 
 fn directional_share(point: Receiver, place: vec2f) -> f32 {
-  let corner = texel_corner(place, point.lamp);
+  let corner = texel_corner(place);
   return blend(vec4<bool>(
     directional_texel_lit(point, corner),
     directional_texel_lit(point, corner + vec2i(1, 0)),

@@ -10,17 +10,12 @@ from numpy.typing import NDArray
 
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
-from andon.gpu.passes import FullscreenPass, color_attachment, pipeline_layout, shader_module
+from andon.gpu.passes import pipeline_layout, shader_module
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
-from andon.lamps import DirectionalLamp, Lamp, PointLamp, SpotLamp
+from andon.lamps import DirectionalLamp, Lamp, PointLamp, Shadow, SpotLamp
 from andon.quantities import Geometry
-from andon.transport.direct.records import (
-    FACE_RECORD,
-    STRUCTS,
-    WIDE_SPOT_RADIANS,
-    PlanarFrame,
-)
-from andon.transport.direct.shadows.culling import face_triangles
+from andon.transport.direct.records import STRUCTS, WIDE_SPOT_RADIANS, PlanarFrame
+from andon.transport.direct.shadows.face_maps import FaceMaps
 
 __all__ = ["NEAR_M", "ShadowMaps"]
 
@@ -29,6 +24,11 @@ FOLDER = "andon/transport/direct/shadows"
 NEAR_M = 0.01
 # A depth map without casters would have an empty bounding sphere.
 EMPTY_RADIUS_M = 1.0
+
+
+def shadow_of(lamp: Lamp, /) -> Shadow | None:
+    """How the lamp's shadow is wanted; None for lamps that cast none."""
+    return lamp.shadow if isinstance(lamp, PointLamp | DirectionalLamp) else None
 
 
 def is_paraboloid(lamp: Lamp, /) -> bool:
@@ -53,11 +53,11 @@ class ShadowMaps:
 
     def __init__(self, gpu: Gpu, casters: Geometry, lamps: Sequence[Lamp]) -> None:
         self.gpu = gpu
-        shadowed = [lamp for lamp in lamps if getattr(lamp, "shadow", None) is not None]
-        self.size: int = max((lamp.shadow.map_size for lamp in shadowed), default=2)  # type: ignore[union-attr]
+        shadowed = [lamp for lamp in lamps if shadow_of(lamp) is not None]
+        wishes = [wish for lamp in lamps if (wish := shadow_of(lamp)) is not None]
+        self.size = max((wish.map_size for wish in wishes), default=2)
         self.size += self.size % 2
-        filters = {lamp.shadow.filter for lamp in shadowed}
-        self.filter = "none" if filters <= {"none"} else "linear"
+        self.filter = "linear" if any(wish.filter == "linear" for wish in wishes) else "none"
         round_lamps = [lamp.name for lamp in shadowed if is_paraboloid(lamp)]
         flat_lamps = [lamp.name for lamp in shadowed if not is_paraboloid(lamp)]
         self.layers = {name: 2 * i for i, name in enumerate(round_lamps)}
@@ -73,7 +73,11 @@ class ShadowMaps:
             gpu, "depth32float", side, side, layers=max(1, len(flat_lamps)), label="planes"
         )
         self._load(casters)
-        self._faces = _Faces(self) if round_lamps else None
+        self._faces: FaceMaps | None = None
+        if round_lamps:
+            layers = range(self.paraboloids.layers or 0)
+            views = [self.paraboloids.layer_view(layer) for layer in layers]
+            self._faces = FaceMaps(gpu, self.positions, self.triangles, views, self.size, NEAR_M)
         self._planar = _Planar(self, len(flat_lamps)) if flat_lamps else None
 
     def _load(self, casters: Geometry) -> None:
@@ -166,93 +170,6 @@ def _depth_attachment(view: Any) -> dict[str, Any]:
         "depth_store_op": "store",
         "depth_clear_value": 0.0,
     }
-
-
-class _Faces:
-    """Six plane faces, resampled into two paraboloids."""
-
-    def __init__(self, maps: ShadowMaps) -> None:
-        import wgpu
-
-        gpu = maps.gpu
-        self.maps, self.face = maps, maps.size // 2
-        size = (3 * self.face, 2 * self.face)
-        self.depth = make_texture(gpu, "depth32float", *size, label="faces")
-        self.slope = make_texture(gpu, "rg16float", *size, label="face slopes")
-        layers = maps.paraboloids.layers or 0
-        self.views = [maps.paraboloids.layer_view(layer) for layer in range(layers)]
-        slots = range(layers // 2)
-        self.lamps = [uniform_buffer(gpu, FACE_RECORD.dtype.itemsize, "lamp") for _ in slots]
-        # Worst case: every face sees every triangle.
-        size_bytes = max(12, 6 * maps.triangles.nbytes)
-        usage = wgpu.BufferUsage.INDEX | wgpu.BufferUsage.COPY_DST
-        self.indices = [gpu.device.create_buffer(size=size_bytes, usage=usage) for _ in slots]
-        self.groups = [
-            bind_group(
-                gpu,
-                {
-                    0: ("uniform", lamp),
-                    1: ("depth", self.depth.view),
-                    2: ("float", self.slope.view),
-                },
-                "resample",
-            )
-            for lamp in self.lamps
-        ]
-        self.face_groups = [bind_group(gpu, {0: ("uniform", lamp)}) for lamp in self.lamps]
-        self.pipeline = self._pipeline(gpu)
-        self.resample = FullscreenPass(
-            gpu,
-            f"{FOLDER}/resample.wgsl",
-            "both_discs",
-            ["r32float", "r32float"],
-            [self.groups[0]],
-            structs=STRUCTS,
-        )
-
-    def _pipeline(self, gpu: Gpu) -> Any:
-        module = shader_module(gpu, f"{FOLDER}/faces.wgsl", STRUCTS)
-        return gpu.device.create_render_pipeline(
-            label="shadow faces",
-            layout=pipeline_layout(gpu, [self.face_groups[0]]),
-            vertex=_vertex_state(module, "face_corner"),
-            primitive={"topology": "triangle-list", "cull_mode": "none"},
-            depth_stencil=_depth_state(),
-            fragment={
-                "module": module,
-                "entry_point": "face_slope",
-                "targets": [{"format": "rg16float"}],
-            },
-        )
-
-    def encode(self, encoder: Any, position: NDArray[np.float64], layer: int) -> None:
-        maps, slot = self.maps, layer // 2
-        record = FACE_RECORD.pack(position=position, near_m=NEAR_M)
-        write_buffer(maps.gpu, self.lamps[slot], record)
-        faces = face_triangles(maps.positions, maps.triangles, position.astype(np.float32))
-        joined = np.concatenate(faces)
-        if len(joined):
-            write_buffer(maps.gpu, self.indices[slot], joined)
-        render = encoder.begin_render_pass(
-            label="shadow faces",
-            color_attachments=[color_attachment(self.slope.view)],
-            depth_stencil_attachment=_depth_attachment(self.depth.view),
-        )
-        render.set_pipeline(self.pipeline)
-        render.set_bind_group(0, self.face_groups[slot].group)
-        render.set_vertex_buffer(0, maps.vertices)
-        render.set_index_buffer(self.indices[slot], "uint32")
-        start = 0
-        for face, triangles in enumerate(faces):
-            corner = (face % 3 * self.face, face // 3 * self.face, self.face, self.face)
-            render.set_viewport(*corner, 0, 1)
-            render.set_scissor_rect(*corner)
-            if triangles.size:
-                render.draw_indexed(triangles.size, 1, start, 0, face)
-            start += triangles.size
-        render.end()
-        targets = self.views[layer : layer + 2]
-        self.resample.encode(encoder, targets, [self.groups[slot]])
 
 
 class _Planar:

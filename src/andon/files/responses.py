@@ -1,0 +1,70 @@
+"""Measured camera responses: a CSV of encoded values and the linear light of each channel.
+
+::
+
+    encoded,linear_r,linear_g,linear_b
+    0.0,0.0,0.0,0.0
+    0.5,0.21,0.20,0.22
+    1.0,1.0,1.0,1.0
+
+Both sides are shares of the range, 0…1, and rise strictly; between the rows the curve is linear.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from andon.errors import InputError
+from andon.files.limits import DEFAULT_LIMITS, Limits, check_at_most
+from andon.files.paths import open_bounded
+from andon.files.reader import Reader
+from andon.responses import Response
+
+__all__ = ["RESPONSE_READERS", "read_response"]
+
+COLUMNS = ("encoded", "linear_r", "linear_g", "linear_b")
+# One row for each code of 16 bits.
+MAX_ROWS = 65536
+
+
+def read_response(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> Response:
+    """The ``curve`` response of a CSV file.
+
+    Raises
+    ------
+    InputError
+        if the columns are others, a number is none, or a column does not rise strictly.
+    """
+    data = open_bounded(path, limits, max_bytes=limits.max_text_bytes)
+    try:
+        lines = data.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise InputError("must be UTF-8 text", file=path) from error
+    rows = [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
+    header = tuple(name.strip() for name in rows[0].split(",")) if rows else ()
+    if header != COLUMNS:
+        came = repr(rows[0][:60]) if rows else "nothing"
+        raise InputError(f"the first line must be {','.join(COLUMNS)}, got {came}", file=path)
+    check_at_most(len(rows) - 1, MAX_ROWS, "rows", path)
+    table = np.array([_numbers(row, path) for row in rows[1:]]).reshape(-1, len(COLUMNS))
+    encoded = np.repeat(table[:, :1], 3, axis=1)
+    try:
+        return Response("curve", linear=table[:, 1:].copy(), encoded=encoded)
+    except InputError as error:
+        raise InputError(error.rule, file=path, field=error.field) from error
+
+
+def _numbers(row: str, path: str | Path) -> list[float]:
+    parts = row.split(",")
+    try:
+        values = [float(part) for part in parts]
+    except ValueError:
+        values = []
+    if len(values) != len(COLUMNS) or not all(0 <= value <= 1 for value in values):
+        raise InputError(f"a row must be four numbers of 0…1, got {row[:60]!r}", file=path)
+    return values
+
+
+RESPONSE_READERS = (Reader("response.csv", (".csv",), read_response),)

@@ -1,0 +1,1 @@
+"""The rows, one module a stage; what they measure stands beside them."""

@@ -1,0 +1,58 @@
+"""What the README tells to type works as it stands there."""
+
+import re
+import shlex
+
+import numpy as np
+import pytest
+
+from andon.cli import _run
+from andon.files.pictures import read_picture, write_picture
+
+from .tree import ROOT
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+COMMANDS = re.findall(r"`andon (relight [^`]*)`", README)
+FILES = dict(re.findall(r"```toml\n# ([\w.]+)[^\n]*\n(.*?)```", README, re.DOTALL))
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder with the files that the README takes for granted, and those that it shows."""
+    write_picture(tmp_path / "photo.png", np.full((90, 160, 3), 128, np.uint8))
+    np.save(tmp_path / "depth.npy", np.full((90, 160), 2.0))
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_it_shows_something():
+    assert len(COMMANDS) >= 4
+    assert set(FILES) == {"camera.toml", "night.toml"}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_command(command, folder, capsys):
+    words = shlex.split(command)
+    assert _run([*words, "--engine", "reference"], debug=True) == 0
+    out = folder / words[words.index("-o") + 1]
+    assert not np.array_equal(read_picture(out).values, read_picture(folder / "photo.png").values)
+    for name in re.findall(r"--illuminance-map (\S+)", command):
+        assert (folder / name).is_file()
+
+
+def test_python(folder, capsys):
+    blocks = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    assert blocks
+    for block in blocks:
+        names = {}
+        exec(compile(block, "README.md", "exec"), names)
+        assert names["frame"].illuminance.lux.max() > 10
+
+
+def test_links():
+    links = re.findall(r"\]\(([^)#:]+)\)", README)
+    assert "CONVENTIONS.md" in links
+    missing = [link for link in links if not (ROOT / link).exists()]
+    assert missing == []

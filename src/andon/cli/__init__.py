@@ -18,27 +18,29 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _run(words: list[str], debug: bool) -> int:
-    import click
+    import typer
 
     from andon.cli.app import app
     from andon.errors import AndonError
 
     try:
         result = app(args=words, prog_name="andon", standalone_mode=False)
+        if result == INTERRUPTED:  # newer versions of Typer catch the interrupt themselves
+            return _say("interrupted", INTERRUPTED)
         return result if isinstance(result, int) else 0
     except AndonError as error:
         if debug:
             raise
         return _say(str(error), error.exit_code)
-    except click.exceptions.Abort:
-        return _say("interrupted", INTERRUPTED)
-    except click.ClickException as error:
-        return _say(f"{error.format_message()}; see andon --help", 2)
-    except KeyboardInterrupt:
+    except (typer.Abort, KeyboardInterrupt):
         return _say("interrupted", INTERRUPTED)
     except BrokenPipeError:
         return 0
     except Exception as error:
+        # Usage errors are Click's or, in newer versions, Typer's own: no common base, one method.
+        usage = getattr(error, "format_message", None)
+        if usage is not None:
+            return _say(f"{usage()}; see andon --help", 2)
         if debug:
             raise
         what = f"{type(error).__name__}: {error}".replace("\n", " ")

@@ -24,6 +24,8 @@ def check_writable(path: Path, suffixes: tuple[str, ...], field: str) -> None:
         raise InputError(
             f"must end in {', '.join(suffixes)}, got {path.name!r}", file=path, field=field
         )
+    if path.is_dir():
+        raise InputError("must be a file, not a folder", file=path, field=field)
     folder = path.parent
     if not folder.is_dir():
         raise InputError(

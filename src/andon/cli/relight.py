@@ -53,6 +53,11 @@ def run(options: RelightOptions) -> None:
 
     renderer = Renderer(scene_of(options), options.engine)  # type: ignore[arg-type]
     frame = renderer.render(options.time_seconds, options.view)
+    if options.scene is None and options.ambient_lux is None:
+        note(
+            f"E0 is not stated: {ASSUMED_AMBIENT_LUX:g} lx assumed, results are relative "
+            "(--ambient-lux states it)"
+        )
     _write(options.out, frame.image.rgb, frame.luminance)
     for path in options.illuminance_maps:
         write_illuminance(path, frame.illuminance, frame.surface.valid)
@@ -115,7 +120,7 @@ def _override(tables: dict[str, Any], options: RelightOptions) -> None:
 
 
 def _assume(tables: dict[str, Any], options: RelightOptions) -> None:
-    """What a scene would state and the command line did not; told on stderr."""
+    """What a scene would state and the command line did not."""
     if options.camera is None:
         raise InputError(
             "is missing: nothing says where the pixels look",
@@ -129,10 +134,6 @@ def _assume(tables: dict[str, Any], options: RelightOptions) -> None:
     if options.ambient_lux is None:
         tables["scene"] = {"photometry": "relative"}
         tables.setdefault("ambient", {})["illuminance_lux"] = ASSUMED_AMBIENT_LUX
-        note(
-            f"E0 is not stated: {ASSUMED_AMBIENT_LUX:g} lx assumed, results are relative "
-            "(--ambient-lux states it)"
-        )
 
 
 def _write(path: Path, rgb: Any, luminance: Any) -> None:

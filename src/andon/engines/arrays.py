@@ -80,7 +80,10 @@ def _lux(ambient_lux: Any, view: View) -> NDArray[np.float64]:
 
 
 def _dimming(dimming: Any) -> tuple[float, float, float]:
-    r, g, b = np.broadcast_to(np.asarray(dimming, np.float64), 3)
+    share = np.asarray(dimming, np.float64)
+    if share.shape not in ((), (3,)):
+        raise InputError(f"must be a number or three channels, got {share.shape}", field="dimming")
+    r, g, b = np.broadcast_to(share, 3)
     if not (np.isfinite([r, g, b]).all() and min(r, g, b) >= 0):
         raise InputError(f"must be ≥ 0, got {dimming}", field="dimming")
     return float(r), float(g), float(b)

@@ -52,7 +52,8 @@ def resolve_lamps(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
     for index, table in enumerate(scene.at(time_seconds).lamp):
         place = f"lamp[{index}]"
         _refuse_later(scene, place, table)
-        lamp = _BUILDERS[table.kind](table)
+        with np.errstate(over="ignore"):  # what overflows is refused below
+            lamp = _BUILDERS[table.kind](table)
         light = [getattr(lamp, key, 0.0) for key in _LIGHT]
         if not all(np.isfinite(values).all() for values in light):
             raise InputError("is too large to compute with", file=scene.file, field=place)

@@ -51,7 +51,8 @@ def refused_scene(capfd, folder):
     """Refuses the scene file with `text` added, or with parts of it exchanged."""
 
     def run(text="", *more, without=None, **exchanged):
-        scene = SCENE if without is None else SCENE.replace(without, "")
+        scene = (folder / "scene.toml").read_text()
+        scene = scene if without is None else scene.replace(without, "")
         for old, new in exchanged.items():
             assert old in scene
             scene = scene.replace(old, new)
@@ -394,16 +395,13 @@ def test_words_that_are_none(capfd, folder, words, message):
 def test_no_adapter_is_the_machines_fault(capfd, folder, monkeypatch):
     from andon.gpu import device
 
-    device.open_gpu.cache_clear()
     monkeypatch.setattr(device, "_request_adapter", lambda: None)
+    monkeypatch.setattr("andon.engines.gpu.open_gpu", device.open_gpu.__wrapped__)
     words = ["relight", "photo.png", "--scene", "scene.toml", "-o", "out.png", "--engine"]
-    try:
-        line = run_refused(capfd, folder, *words, "gpu", code=3)
-        assert "no GPU adapter found" in line
-        assert "--engine reference" in line
-        outcome = run_andon(capfd, *words, "auto")
-    finally:
-        device.open_gpu.cache_clear()
+    line = run_refused(capfd, folder, *words, "gpu", code=3)
+    assert "no GPU adapter found" in line
+    assert "--engine reference" in line
+    outcome = run_andon(capfd, *words, "auto")
     assert outcome.code == 0
     assert "reference" in outcome.err
 
@@ -451,8 +449,9 @@ def test_debug_shows_where(folder, monkeypatch):
         main([*words, "--engine", "reference"])
 
 
-def test_a_response_curve_from_a_file_is_refused_while_nobody_reads_one(refused_scene):
+def test_a_response_file_that_is_missing_or_falls(refused_scene, folder):
     source = 'source = "photo.png"'
     curve = f'{source}\nresponse = {{kind = "curve", file = "curve.csv"}}'
-    line = refused_scene(**{source: curve})
-    assert "capture.response: 'curve' is in the schema but" in line
+    assert "curve.csv: must exist" in refused_scene(**{source: curve})
+    (folder / "curve.csv").write_text("encoded,linear_r,linear_g,linear_b\n0,0,1,0\n1,1,0,1\n")
+    assert "curve.csv: response.linear: must be finite and strictly increasing" in refused_scene()

@@ -63,8 +63,11 @@ def test_arrays_and_files_give_the_same(engine, tmp_path):
     assert (by_arrays.image.rgb == by_files.image.rgb).all()
 
 
+CURVE = {"kind": "curve", "file": "curve.csv"}
+
+
 @pytest.mark.parametrize(
-    "response", ["srgb", "linear", "gamma:2.2", {"kind": "gamma", "gamma": 1.8}]
+    "response", ["srgb", "linear", "gamma:2.2", {"kind": "gamma", "gamma": 1.8}, CURVE]
 )
 def test_no_lamps_no_change_through_files(engine, tmp_path, response):
     from worlds import ALL_CODES
@@ -74,6 +77,9 @@ def test_no_lamps_no_change_through_files(engine, tmp_path, response):
     depth = np.full((16, 48), 2.0)
     depth[4:9, 7:30] = np.nan
     np.save(tmp_path / "depth.npy", depth)
+    rows = [f"{x},{x**1.8},{x**2.2},{x**2.6}" for x in np.linspace(0, 1, 9)]
+    text = "\n".join(["encoded,linear_r,linear_g,linear_b", *rows])
+    (tmp_path / "curve.csv").write_text(text)
     tables["capture"]["response"] = response
     frame = Renderer(scene_from_dict(tables, folder=tmp_path), engine).render()
     assert (frame.image.rgb == ALL_CODES).all()

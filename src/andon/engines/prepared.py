@@ -171,12 +171,9 @@ def _response(scene: Scene, picture: Picture) -> Response:
     if table.kind == "gamma":
         return Response("gamma", gamma=table.gamma or 2.2)
     if table.kind == "curve":
-        raise InputError(
-            "'curve' is in the schema but response files are not read yet",
-            file=scene.file,
-            field="capture.response",
-            remedy="use srgb, linear or gamma; andon.relight takes a Response with a curve",
-        )
+        from andon.files.responses import read_response
+
+        return read_response(scene.path(table.file or "", "capture.response.file"))
     return LINEAR if table.kind == "linear" else SRGB
 
 

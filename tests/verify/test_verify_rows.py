@@ -100,3 +100,29 @@ def test_gpu_rows_hold(name):
 def test_both_engines_agree_on_the_motorcycle(name):
     (entry,) = chosen([name], rows())
     assert measured(entry)["holds"] is True, measured(entry)
+
+
+@pytest.mark.usefixtures("gpu")
+def test_engines_differ_on_the_motorcycle_only_at_shadow_edges():
+    """A thinned `andon verify relight.parity`: only the pixels that differ are looked at."""
+    import numpy as np
+
+    from andon.rays import RayScene
+    from andon.verify.edges import near_change, shadow_edges
+    from andon.verify.rows.motorcycle import _demonstration
+
+    gpu, slow = _demonstration("gpu"), _demonstration("reference")
+    difference = np.abs(gpu.frame.image.rgb.astype(int) - slow.frame.image.rgb.astype(int))
+    surface, prepared = slow.frame.surface, slow.renderer.prepared
+    apart = (difference.max(axis=-1) > 5) & surface.valid & ~near_change(surface.is_object, 1)
+    points, normals = surface.position[apart], surface.normal[apart]
+    bias, casters = prepared.surface.bias.real_m, RayScene(prepared.surface.shadow_casters)
+
+    def visible(at, facing, lamp_position):
+        return casters.is_visible(at + bias * facing, lamp_position)
+
+    edges = np.zeros(len(points), bool)
+    for lamp in prepared.lamps(0.0):
+        size = lamp.shadow.map_size
+        edges |= shadow_edges(points, normals, lamp, visible, casters, size, steps=9)
+    assert (~edges).sum() <= 1e-3 * apart.size

@@ -11,6 +11,7 @@ from andon.gpu.passes import shader_module
 from andon.lamps import DirectionalLamp, PointLamp, SkyLamp, SpotLamp
 from andon.surface.stage import PLAIN, TEXTURED
 from andon.transport.direct.records import sorted_lamps
+from andon.transport.direct.shadows.face_maps import DISTANCE, TRIANGLE
 from andon.transport.direct.stage import FILTER, SUM, sum_of_lamps
 
 from .tree import modules
@@ -39,9 +40,10 @@ VARIANTS = {
     "fisheye": {PROJECTION.format("pinhole"): PROJECTION.format("fisheye")},
     "latlong": {PROJECTION.format("pinhole"): PROJECTION.format("latlong")},
     "linear filter": {FILTER.format("none"): FILTER.format("linear")},
+    "exact filter": {FILTER.format("none"): FILTER.format("exact"), DISTANCE: TRIANGLE},
     "textures": {PLAIN: TEXTURED},
-    "one lamp of each kind": {SUM: sum_of_lamps(ONE_OF_EACH, {"point": 0}, 1024)},
-    "no lamps": {SUM: sum_of_lamps([[], [], [], [], []], {}, 2)},
+    "one lamp of each kind": {SUM: sum_of_lamps(ONE_OF_EACH, {"point": 0}, 1024, 5)},
+    "no lamps": {SUM: sum_of_lamps([[], [], [], [], []], {}, 2, 0)},
 }
 
 

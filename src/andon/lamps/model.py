@@ -28,11 +28,12 @@ class Shadow:
     Attributes
     ----------
     map_size : texels along a side of the shadow map, 16…8192.
-    filter : ``none`` hard, ``linear`` blended over one texel (2×2).
+    filter : ``none`` hard, ``linear`` blended over one texel, ``exact`` the triangles' own
+        edges (point and spot lamps; sixteen reads instead of one; directional lamps: linear).
     """
 
     map_size: int = 1024
-    filter: Literal["none", "linear"] = "linear"
+    filter: Literal["none", "linear", "exact"] = "linear"
 
 
 @dataclass(frozen=True)

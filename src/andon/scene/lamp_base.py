@@ -180,9 +180,9 @@ class Shadowing(Table):
         default=1024,
         description="Texels along a side of the shadow map, 16…8192.",
     )
-    shadow_filter: Literal["none", "linear"] = Field(
+    shadow_filter: Literal["none", "linear", "exact"] = Field(
         default="linear",
-        description="How the shadow map is read: none (hard), linear (blended over 2×2 texels).",
+        description="How the shadow map is read: none (hard), linear (blended over 2×2 texels), exact (edges of the triangles themselves, slower; directional lamps: linear).",
     )
 
 

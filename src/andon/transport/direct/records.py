@@ -22,6 +22,7 @@ __all__ = [
     "STRUCTS",
     "WIDE_SPOT_RADIANS",
     "PlanarFrame",
+    "is_exact",
     "pack_lamps",
     "sorted_lamps",
 ]
@@ -95,6 +96,11 @@ class PlanarFrame:
     depth_range_m: float = 0.0
 
 
+def is_exact(lamp: PointLamp, /) -> bool:
+    """The lamp wants exact shadows, which only a paraboloid has."""
+    return lamp.shadow is not None and lamp.shadow.filter == "exact"
+
+
 def sorted_lamps(lamps: Sequence[Lamp], /) -> list[list[Lamp]]:
     """The lamps in five groups: point, wide spot, spot, directional, hemisphere (and sky).
 
@@ -116,7 +122,7 @@ def sorted_lamps(lamps: Sequence[Lamp], /) -> list[list[Lamp]]:
 def _group(lamp: Lamp) -> int:
     match lamp:
         case SpotLamp():
-            return 1 if lamp.outer_radians > WIDE_SPOT_RADIANS else 2
+            return 1 if lamp.outer_radians > WIDE_SPOT_RADIANS or is_exact(lamp) else 2
         case PointLamp():
             return 0
         case DirectionalLamp():

@@ -30,12 +30,15 @@ SUM = "andon/transport/direct/sum.wgsl"
 GROUPS = ("point", "wide_spot", "spot", "directional", "hemisphere")
 
 
-def sum_of_lamps(groups: Sequence[Sequence[Lamp]], layers: Mapping[str, int], size: int, /) -> str:
+def sum_of_lamps(
+    groups: Sequence[Sequence[Lamp]], layers: Mapping[str, int], size: int, triangles: int, /
+) -> str:
     """WGSL of `illuminance` for just these lamps: no loops, no branches, constants as constants.
 
-    `layers` are those of the shadow maps by lamp name, `size` their texels along a side.
+    `layers` are those of the shadow maps by lamp name, `size` their texels along a side,
+    `triangles` how many cast shadows.
     """
-    lines = [f"const MAP_SIZE: f32 = {float(size)};"]
+    lines = [f"const MAP_SIZE: f32 = {float(size)};", f"const TRIANGLES: i32 = {triangles};"]
     lines.append("fn illuminance(position: vec3f, normal: vec3f, bias: f32) -> vec3f {")
     lines.append("  var total = vec3f(0.0);")
     lamp = 0
@@ -74,7 +77,7 @@ class DirectStage:
         self.maps = ShadowMaps(gpu, casters, lamps)
         groups = sorted_lamps(lamps)
         self.variants = {
-            SUM: sum_of_lamps(groups, self.maps.layers, self.maps.size),
+            SUM: sum_of_lamps(groups, self.maps.layers, self.maps.size, len(self.maps.triangles)),
             FILTER.format("none"): FILTER.format(self.maps.filter),
         }
         self._lamps = uniform_buffer(gpu, LAMP_RECORD.dtype.itemsize * MAX_LAMPS, "lamps")
@@ -86,6 +89,7 @@ class DirectStage:
                 1: ("uniform", self._settings),
                 2: ("float array", self.maps.paraboloids.view),
                 3: ("depth array", self.maps.planes.view),
+                4: ("storage", self.maps.occluders),
             },
             "direct",
         )

@@ -2,6 +2,7 @@
 // frame's own lamps: a software rasteriser runs through a loop once even if it is empty.
 
 const MAP_SIZE: f32 = 1024.0;
+const TRIANGLES: i32 = 1;
 
 fn illuminance(position: vec3f, normal: vec3f, bias: f32) -> vec3f {
   var total = vec3f(0.0);

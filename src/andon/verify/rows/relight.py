@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from andon.pipeline import EngineName
 from andon.verify.registry import Row
 from andon.verify.rows.closed_forms import floor_error, point_reference
@@ -48,6 +50,36 @@ def _rows(engine: EngineName) -> tuple[Row, ...]:
     )
 
 
+def _shadow_rows(shadow_filter: Literal["none", "exact"]) -> tuple[Row, ...]:
+    name, against = f"relight.paraboloid.{shadow_filter}", f"{RAYS}; 1024² map, {shadow_filter}"
+    return (
+        Row(
+            f"{name}.differ",
+            "relight",
+            0.1,
+            "% of pixels",
+            against,
+            lambda: paraboloids(shadow_filter)[0],
+        ),
+        Row(
+            f"{name}.beyond_two_texels",
+            "relight",
+            0,
+            "pixels",
+            f"{against}; farther than 2 map texels from a true edge, of 3.3 million",
+            lambda: paraboloids(shadow_filter)[1],
+        ),
+        Row(
+            f"{name}.seam",
+            "relight",
+            0,
+            "pixels",
+            f"{against}; those of them on the seam",
+            lambda: paraboloids(shadow_filter)[2],
+        ),
+    )
+
+
 CLOSED_FORM = "closed forms, horizon included"
 RAYS = "Embree shadow rays, room of 13,150 triangles, |cos φ| > 0.05"
 TOLERANCE = "the reference engine on the motorcycle, away from shadow edges"
@@ -57,30 +89,8 @@ ROWS: tuple[Row, ...] = (
     Row("relight.point.gpu", "relight", 1e-3, "relative", CLOSED_FORM, lambda: floor_error("gpu")),
     *_rows("reference"),
     *_rows("gpu"),
-    Row(
-        "relight.paraboloid.differ",
-        "relight",
-        0.1,
-        "% of pixels",
-        RAYS,
-        lambda: paraboloids()[0],
-    ),
-    Row(
-        "relight.paraboloid.beyond_two_texels",
-        "relight",
-        0,
-        "pixels",
-        f"{RAYS}; pixels that differ farther than 2 map texels from a true edge",
-        lambda: paraboloids()[1],
-    ),
-    Row(
-        "relight.paraboloid.seam",
-        "relight",
-        0,
-        "pixels",
-        f"{RAYS}; those of them on the seam",
-        lambda: paraboloids()[2],
-    ),
+    *_shadow_rows("exact"),
+    *_shadow_rows("none"),
     Row(
         "relight.parity.within_5",
         "relight",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Literal
 
 import cv2
 import numpy as np
@@ -22,7 +23,7 @@ __all__ = ["against_radiance", "paraboloids"]
 
 Float = NDArray[np.float64]
 
-SHADOW = Shadow(map_size=1024, filter="none")
+MAP_SIZE = 1024
 
 
 @cache
@@ -77,12 +78,12 @@ def _near_depth_edges(depth: Float) -> NDArray[np.bool_]:
 
 
 @cache
-def paraboloids() -> tuple[float, float, float]:
+def paraboloids(shadow_filter: Literal["none", "exact"]) -> tuple[float, float, float]:
     """Share of pixels whose shadow differs from rays; those far from an edge; on the seam."""
     visibility, casters = Visibility(room()), RayScene(room())
     view = camera_in(room(), 1280, 720)
     differing = facing = far = seam = 0
-    for lamp in room_lamps(4, SHADOW):
+    for lamp in room_lamps(4, Shadow(MAP_SIZE, shadow_filter)):
         frame = Renderer(prepared_of(room(), view, (lamp,)), "gpu").render()
         surface = frame.surface
         mask = surface.valid
@@ -101,7 +102,7 @@ def paraboloids() -> tuple[float, float, float]:
             lamp,
             visibility.visible,
             casters,
-            SHADOW.map_size,
+            MAP_SIZE,
             steps=9,
         )
         far += int(away.sum())
@@ -113,4 +114,4 @@ def _on_seam(reach: Float) -> NDArray[np.bool_]:
     """(n,) within two texels of the circle where one paraboloid ends and the other begins."""
     distance = np.linalg.norm(reach, axis=1)
     radius = np.linalg.norm(reach[:, :2], axis=1) / (distance + np.abs(reach[:, 2]))
-    return np.abs(radius - 1) < 2 * 2 / SHADOW.map_size
+    return np.abs(radius - 1) < 2 * 2 / MAP_SIZE

@@ -19,6 +19,7 @@ from andon.transport.direct.shadows.culling import face_triangles
 __all__ = ["FaceMaps", "TrianglePlanes"]
 
 FOLDER = "andon/transport/direct/shadows"
+DISTANCE, TRIANGLE = f"{FOLDER}/resample_distance.wgsl", f"{FOLDER}/resample_triangle.wgsl"
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,12 @@ class FaceMaps:
     positions, triangles : (n, 3) float32 metres and (m, 3) int32, what casts shadows.
     discs : views of the layers to fill, two for each lamp.
     map_size : texels along a side of a disc.
+    exact : discs hold which triangle is seen, and `occluders` describes it.
+
+    Attributes
+    ----------
+    occluders : (lamps · m · 4,) vec4f storage buffer, see filter_exact.wgsl; one row without
+        `exact`.
     near_m : nothing nearer to the lamp casts a shadow.
     """
 
@@ -51,8 +58,10 @@ class FaceMaps:
         discs: Sequence[Any],
         map_size: int,
         near_m: float,
+        *,
+        exact: bool = False,
     ) -> None:
-        self.gpu, self.discs, self.near_m = gpu, discs, near_m
+        self.gpu, self.discs, self.near_m, self.exact = gpu, discs, near_m, exact
         self.positions, self.triangles = positions, triangles
         self._planes = TrianglePlanes(positions, triangles)
         self.face = map_size // 2
@@ -71,7 +80,10 @@ class FaceMaps:
             ["r32float", "r32float"],
             [self._slots[0].resampling],
             structs=STRUCTS,
+            variants={DISTANCE: TRIANGLE} if exact else {},
         )
+        rows = 4 * len(triangles) * len(self._slots) if exact else 1
+        self.occluders = self._storage(16 * max(1, rows))
 
     def _storage(self, size_bytes: int) -> Any:
         import wgpu
@@ -151,20 +163,27 @@ class FaceMaps:
         write_buffer(self.gpu, slot.lamp, record)
         if len(seen):
             write_buffer(self.gpu, slot.corners, self.triangles[seen])
-            write_buffer(self.gpu, slot.planes, self._planes.seen_from(position)[seen])
+            planes = self._planes.seen_from(position)
+            write_buffer(self.gpu, slot.planes, planes[seen])
+            if self.exact:
+                rows = np.stack([planes, *self._planes.edges_from(position)], axis=1)
+                first = self._slots.index(slot) * rows.nbytes
+                self.gpu.device.queue.write_buffer(self.occluders, first, rows.view(np.uint8))
 
 
 class TrianglePlanes:
     """Planes of triangles as any lamp has them; normals are made once."""
 
     def __init__(self, positions: NDArray[np.float32], triangles: NDArray[np.int32]) -> None:
-        a, b, c = (positions[triangles[:, i]].astype(np.float64) for i in range(3))
+        self._corners = positions.astype(np.float64)[triangles]
+        a, b, c = np.moveaxis(self._corners, 1, 0)
         self._normal: NDArray[np.float64] = np.cross(b - a, c - a)
         self._offset: NDArray[np.float64] = np.einsum("ij,ij->i", self._normal, a)
         self._tiny = 1e-12 * np.linalg.norm(self._normal, axis=1) + 1e-300
 
     def seen_from(self, lamp: NDArray[np.float64], /) -> NDArray[np.float32]:
-        """(m, 4): q in xyz with q·(P − lamp) = 1 for the points P of each triangle's plane.
+        """(m, 4): q in xyz with q·(P − lamp) = 1 for the points P of each triangle's plane; its
+        number plus one in w.
 
         q = n/(n·(a − lamp)); along a unit direction d the plane is 1/(q·d) away. Large where the
         lamp lies in the plane, which then is seen edge-on.
@@ -173,4 +192,17 @@ class TrianglePlanes:
         distance = np.where(np.abs(distance) < self._tiny, self._tiny, distance)
         planes = np.zeros((len(distance), 4), np.float32)
         planes[:, :3] = np.clip(self._normal / distance[:, None], -1e30, 1e30)
+        planes[:, 3] = np.arange(1, len(planes) + 1)
         return planes
+
+    def edges_from(self, lamp: NDArray[np.float64], /) -> list[NDArray[np.float32]]:
+        """Three (m, 4): unit normals, inwards, of the planes through the lamp and each edge."""
+        corners = self._corners - lamp
+        side = np.sign(self._offset - self._normal @ lamp)
+        edges: list[NDArray[np.float32]] = []
+        for first, second in ((0, 1), (1, 2), (2, 0)):
+            normal = np.cross(corners[:, first], corners[:, second]) * side[:, None]
+            length = np.linalg.norm(normal, axis=1, keepdims=True)
+            unit = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+            edges.append(np.pad(unit, ((0, 0), (0, 1))).astype(np.float32))
+        return edges

@@ -14,11 +14,13 @@ from andon.gpu.passes import pipeline_layout, shader_module
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
 from andon.lamps import DirectionalLamp, Lamp, PointLamp, Shadow, SpotLamp
 from andon.quantities import Geometry
-from andon.transport.direct.records import STRUCTS, WIDE_SPOT_RADIANS, PlanarFrame
+from andon.transport.direct.records import STRUCTS, WIDE_SPOT_RADIANS, PlanarFrame, is_exact
 from andon.transport.direct.shadows.face_maps import FaceMaps
 
 __all__ = ["NEAR_M", "ShadowMaps"]
 
+# From the coarsest to the finest.
+FILTERS = ("none", "linear", "exact")
 FOLDER = "andon/transport/direct/shadows"
 # Nothing nearer than this to a lamp casts a shadow (the bulb itself, its socket): metres.
 NEAR_M = 0.01
@@ -32,9 +34,9 @@ def shadow_of(lamp: Lamp, /) -> Shadow | None:
 
 
 def is_paraboloid(lamp: Lamp, /) -> bool:
-    """The lamp looks into all directions (or nearly)."""
+    """The lamp looks into all directions (or nearly), or wants exact shadows."""
     if isinstance(lamp, SpotLamp):
-        return lamp.outer_radians > WIDE_SPOT_RADIANS
+        return lamp.outer_radians > WIDE_SPOT_RADIANS or is_exact(lamp)
     return isinstance(lamp, PointLamp)
 
 
@@ -57,7 +59,8 @@ class ShadowMaps:
         wishes = [wish for lamp in lamps if (wish := shadow_of(lamp)) is not None]
         self.size = max((wish.map_size for wish in wishes), default=2)
         self.size += self.size % 2
-        self.filter = "linear" if any(wish.filter == "linear" for wish in wishes) else "none"
+        finest = max((FILTERS.index(wish.filter) for wish in wishes), default=0)
+        self.filter = FILTERS[finest]
         round_lamps = [lamp.name for lamp in shadowed if is_paraboloid(lamp)]
         flat_lamps = [lamp.name for lamp in shadowed if not is_paraboloid(lamp)]
         self.layers = {name: 2 * i for i, name in enumerate(round_lamps)}
@@ -77,7 +80,16 @@ class ShadowMaps:
         if round_lamps:
             layers = range(self.paraboloids.layers or 0)
             views = [self.paraboloids.layer_view(layer) for layer in layers]
-            self._faces = FaceMaps(gpu, self.positions, self.triangles, views, self.size, NEAR_M)
+            self._faces = FaceMaps(
+                gpu,
+                self.positions,
+                self.triangles,
+                views,
+                self.size,
+                NEAR_M,
+                exact=self.filter == "exact",
+            )
+        self.occluders = self._faces.occluders if self._faces else self.vertices
         self._planar = _Planar(self, len(flat_lamps)) if flat_lamps else None
 
     def _load(self, casters: Geometry) -> None:
@@ -94,7 +106,9 @@ class ShadowMaps:
         device, usage = self.gpu.device, wgpu.BufferUsage
         vertices = self.positions if len(self.positions) else np.zeros((1, 3), np.float32)
         indices = self.triangles if len(self.triangles) else np.zeros((1, 3), np.int32)
-        self.vertices = device.create_buffer_with_data(data=vertices, usage=usage.VERTEX)
+        self.vertices = device.create_buffer_with_data(
+            data=vertices, usage=usage.VERTEX | usage.STORAGE
+        )
         self.indices = device.create_buffer_with_data(data=indices, usage=usage.INDEX)
 
     def update(self, encoder: Any, lamps: Sequence[Lamp]) -> int:

@@ -1,0 +1,45 @@
+"""A small room with things in it, and one lamp of every kind."""
+
+import numpy as np
+
+from andon.lamps import (
+    DirectionalLamp,
+    HemisphereLamp,
+    PointLamp,
+    Shadow,
+    SkyLamp,
+    SpotLamp,
+)
+from andon.spaces import View, look_at
+from andon.surface.load import joined
+from worlds import ball, block, unit
+
+POSE = look_at(np.array([1.6, 1.7, 2.1]), np.array([-0.2, 0.6, -0.3]))
+VIEW = View("pinhole", 240, 180, 150.0, 150.0, 119.5, 89.5, world_from_camera=POSE)
+
+
+def open_room():
+    """Floor and two walls (light may come from outside), a block and a ball."""
+    floor = block((6, 0.2, 6), (0, -0.1, 0))
+    back = block((6, 3, 0.2), (0, 1.5, -2.6))
+    side = block((0.2, 3, 6), (-2.6, 1.5, 0))
+    return joined(
+        [floor, back, side, block((0.6, 1.0, 0.6), (-0.6, 0.5, -0.8)), ball(0.4, (0.6, 0.4, 0), 8)]
+    )
+
+
+def lamps(shadow):
+    """name → lamp."""
+    warm, at = np.array([90.0, 70.0, 40.0]), np.array([0.9, 1.6, 0.9])
+    aim = unit(np.array([-0.3, 0.4, -0.6]) - at)
+    return {
+        "point": PointLamp("point", at, warm, shadow),
+        "spot": SpotLamp("spot", at, 3 * warm, shadow, 0.0, aim, 0.2, 0.6),
+        "wide spot": SpotLamp("wide spot", at, 2 * warm, shadow, 0.0, aim, 0.5, 1.45),
+        "directional": DirectionalLamp("sun", unit([-0.5, -0.8, -0.4]), 10 * warm, shadow),
+        "sky": SkyLamp("sky", np.array([0.0, 1, 0]), warm),
+        "hemisphere": HemisphereLamp("both", unit([0.1, 1, 0]), warm, 0.2 * warm[::-1]),
+    }
+
+
+HARD, SOFT = Shadow(1024, "none"), Shadow(1024, "linear")

@@ -50,12 +50,13 @@ class Report:
     engine, adapter : what drew it.
     photometry : ``absolute`` or ``relative``, of every number in the frame.
     hole_pixels, clipped_pixels : without geometry (unchanged), and at the sensor's end.
-    occluder_triangles, occluder_triangles_before, occluder_error_m : of the shadow geometry;
-        the error is the 95th percentile of what decimation moved, in metres.
+    occluder_triangles, occluder_triangles_before, occluder_error_m, occluder_lost_share : of the
+        shadow geometry; the error is the 95th percentile of what decimation moved, in metres, and
+        the lost share is what of the real surface has no shadow geometry in its line of sight.
     shadow_bias_m : shadows thinner than this are lost on the real surface.
     maps_redrawn : shadow maps of lamps that had moved.
     stage_seconds : wall time of each stage.
-    ignored_tables : tables of the scene that this version does not draw.
+    ignored_tables : tables and keys of the scene that this version does not draw.
     """
 
     engine: str
@@ -66,6 +67,7 @@ class Report:
     occluder_triangles: int
     occluder_triangles_before: int
     occluder_error_m: float
+    occluder_lost_share: float
     shadow_bias_m: float
     maps_redrawn: int
     stage_seconds: Mapping[str, float] = field(default_factory=dict[str, float])
@@ -187,6 +189,7 @@ class Renderer:
             occluder_triangles_before=model.occluder.triangles_before
             + len(model.casters.triangles),
             occluder_error_m=model.occluder.error_m,
+            occluder_lost_share=model.occluder.lost_share,
             shadow_bias_m=model.bias.real_m,
             maps_redrawn=self._engine.maps_redrawn,
             stage_seconds=self.stage_seconds,

@@ -7,6 +7,7 @@ from andon.display.false_colour import (
     BAR_WIDTH_PX,
     CAPTION_PX,
     HOLE,
+    PAPER,
     contact_sheet,
     depth_picture,
     false_colour,
@@ -48,9 +49,14 @@ def test_a_sheet():
     assert sheet.shape == (2 * height, 3 * width, 3)
     assert sheet.dtype == np.uint8
     assert (sheet[CAPTION_PX:height, :width] == tiles[0][1]).all()
-    assert (sheet[height + CAPTION_PX :, :width] == 90).all()
-    # The bar of the first tile widens the others; what is left of the last row is paper.
-    assert (sheet[CAPTION_PX:height, width : 2 * width][:, -10:] == HOLE).all()
+    # Shapes are kept: 40×30 becomes 160×120, in the middle of its cell.
+    row, left = sheet[height + CAPTION_PX :], (width - 160) // 2
+    assert (row[:, left : left + 160] == 90).all()
+    assert (row[:, :left] == PAPER).all()
+    # The bar of the first tile leaves paper beside the others; so is what is left of the last row.
+    second = sheet[CAPTION_PX:height, width : 2 * width]
+    assert (second[:, left : left + 160] == tiles[1][1]).all()
+    assert (second[:, -10:] == PAPER).all()
     assert len(np.unique(sheet[height:, width:].reshape(-1, 3), axis=0)) == 1
     # Captions are written in ink.
     assert sheet[:CAPTION_PX, :width].min() < 60

@@ -49,7 +49,8 @@ def print_report(report: Report, setup_seconds: Mapping[str, float], pixels: int
         table.add_row(
             "shadows",
             f"{report.occluder_triangles} of {report.occluder_triangles_before} triangles, "
-            f"95 % within {report.occluder_error_m * 1e3:.1f} mm; "
+            f"95 % within {report.occluder_error_m * 1e3:.1f} mm, "
+            f"{report.occluder_lost_share:.1%} lost; "
             f"lift {report.shadow_bias_m * 1e3:.1f} mm",
         )
     if report.ignored_tables:

@@ -100,9 +100,17 @@ def contact_sheet(tiles: Sequence[tuple[str, Rgb]], /, *, columns: int = 3) -> R
 
 
 def _resized(tile: Rgb, width: int, height: int) -> Rgb:
+    """The tile within (height, width), its shape kept, on paper."""
     import cv2
 
-    return np.asarray(cv2.resize(tile, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
+    scale = min(width / tile.shape[1], height / tile.shape[0])
+    size = (max(1, round(tile.shape[1] * scale)), max(1, round(tile.shape[0] * scale)))
+    sheet = np.full((height, width, 3), PAPER, np.uint8)
+    method = cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR
+    inner = np.asarray(cv2.resize(tile, size, interpolation=method), np.uint8)
+    top, left = (height - size[1]) // 2, (width - size[0]) // 2
+    sheet[top : top + size[1], left : left + size[0]] = inner
+    return sheet
 
 
 def _captioned(caption: str, tile: Rgb) -> Rgb:

@@ -25,8 +25,17 @@ from andon.surface.model import SurfaceModel
 
 __all__ = ["Prepared", "prepare"]
 
-# Tables that the schema has and this version does not draw; a frame says so.
+# Tables and keys that the schema has and this version does not draw; a frame says so.
 LATER_TABLES = ("baked", "probes", "glass", "gaze", "glare")
+
+LATER_KEYS = {
+    "surface": ("response", "reflectance_map"),
+    "ambient": ("source",),
+    "capture": ("clipped_luminance_cd_m2", "depth", "pose", "gaze", "noise"),
+    "atmosphere": ("mist",),
+    "observer": ("age", "pigment", "pupil_mm", "glasses"),
+    "display": ("peak_luminance_cd_m2", "transmittance"),
+}
 
 
 @dataclass(frozen=True)
@@ -79,8 +88,18 @@ def prepare(scene: Scene, /) -> Prepared:
         lamps=lambda time_seconds: resolve_lamps(scene, time_seconds),
         exposure=_exposure(scene),
         photometry=scene.photometry,
-        ignored=tuple(name for name in LATER_TABLES if getattr(scene, name)),
+        ignored=_ignored(scene),
     )
+
+
+def _ignored(scene: Scene) -> tuple[str, ...]:
+    """Tables and keys that the scene states and this version does not draw."""
+    tables = [name for name in LATER_TABLES if getattr(scene, name)]
+    keys: list[str] = []
+    for table, names in LATER_KEYS.items():
+        stated = getattr(scene, table)
+        keys += [f"{table}.{n}" for n in names if stated and n in stated.model_fields_set]
+    return (*tables, *keys)
 
 
 def _source(scene: Scene, name: str) -> tuple[str, str]:

@@ -98,11 +98,12 @@ def pack_surface(surface: Surface, /) -> NDArray[np.uint32]:
 
 
 def _octahedral(normal: NDArray[np.float64]) -> NDArray[np.uint32]:
-    p = normal[..., :2] / np.abs(normal).sum(axis=-1, keepdims=True)
-    sign = np.where(p >= 0, 1.0, -1.0)
-    folded = (1 - np.abs(p[..., ::-1])) * sign
-    e: NDArray[np.float64] = np.where(normal[..., 2:] >= 0, p, folded)
-    bits = np.rint(np.clip(e, -1, 1) * 32767).astype(np.int16).view(np.uint16).astype(np.uint32)
+    length: NDArray[np.float64] = np.abs(normal).sum(axis=-1, keepdims=True)
+    p: NDArray[np.float64] = normal[..., :2] / length
+    folded: NDArray[np.float64] = (1 - np.abs(p[..., ::-1])) * np.copysign(1.0, p)
+    e = np.asarray(np.where(normal[..., 2:] >= 0, p, folded), np.float64)
+    signed = np.asarray(np.rint(np.clip(e, -1, 1) * 32767), np.int16)
+    bits = np.asarray(signed.view(np.uint16), np.uint32)
     return bits[..., 0] | (bits[..., 1] << np.uint32(16))
 
 

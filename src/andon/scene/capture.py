@@ -125,7 +125,8 @@ class Capture(Table):
     )
     luminance_per_unit: Positive | None = Field(
         default=None,
-        description="cd/m² of linear value 1. Default: 1 (then E0 sets the scale).",
+        description="cd/m² of linear value 1. Default: E0/π, so that a white diffuser in the "
+        "light of the photograph is linear 1.",
     )
     clipped_luminance_cd_m2: Positive | None = Field(
         default=None,

@@ -182,7 +182,8 @@ class Shadowing(Table):
     )
     shadow_filter: Literal["none", "linear", "exact"] = Field(
         default="linear",
-        description="How the shadow map is read: none (hard), linear (blended over 2×2 texels), exact (edges of the triangles themselves, slower; directional lamps: linear).",
+        description="How the shadow map is read: none (hard), linear (blended over 2×2 texels), "
+        "exact (the triangles' own edges, slower; directional lamps: linear).",
     )
 
 

@@ -175,8 +175,8 @@ class TrianglePlanes:
     """Planes of triangles as any lamp has them; normals are made once."""
 
     def __init__(self, positions: NDArray[np.float32], triangles: NDArray[np.int32]) -> None:
-        self._corners = positions.astype(np.float64)[triangles]
-        a, b, c = np.moveaxis(self._corners, 1, 0)
+        self._corners: NDArray[np.float64] = positions.astype(np.float64)[triangles]
+        a, b, c = (self._corners[:, i] for i in range(3))
         self._normal: NDArray[np.float64] = np.cross(b - a, c - a)
         self._offset: NDArray[np.float64] = np.einsum("ij,ij->i", self._normal, a)
         self._tiny = 1e-12 * np.linalg.norm(self._normal, axis=1) + 1e-300
@@ -198,7 +198,7 @@ class TrianglePlanes:
     def edges_from(self, lamp: NDArray[np.float64], /) -> list[NDArray[np.float32]]:
         """Three (m, 4): unit normals, inwards, of the planes through the lamp and each edge."""
         corners = self._corners - lamp
-        side = np.sign(self._offset - self._normal @ lamp)
+        side = np.sign(np.asarray(self._offset - self._normal @ lamp, np.float64))
         edges: list[NDArray[np.float32]] = []
         for first, second in ((0, 1), (1, 2), (2, 0)):
             normal = np.cross(corners[:, first], corners[:, second]) * side[:, None]

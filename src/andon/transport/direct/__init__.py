@@ -14,9 +14,14 @@ shadow                          reads a pixel  a moved lamp, 27k triangles  erro
 ==============================  =============  ==========================  =====================
 ray (the reference)             –              nothing                     float32 of Embree
 cube map                        1, six ways    6 faces                     1 texel at edges
-**dual paraboloid, resampled**  1              6 faces + 1 pass            1–2 texels at edges
+**dual paraboloid, resampled**  1 (4 blended)  6 faces + 1 pass            1–2 texels at edges
+the same, exact                 16             6 faces + 1 pass            slivers below a texel
 dual paraboloid, rasterised     1              2 faces                     7 texels on long edges
 ==============================  =============  ==========================  =====================
+
+    The *exact* filter lets the map name triangles instead of distances, and asks those around the
+    receiver whether they stand in the way: a map of 2048² then differs from rays on 0.07 % of the
+    pixels, one of 1024² texels on 0.6 % (``andon verify relight.paraboloid``).
 
 Acne without a fudge factor
     A shadow map knows its depth at texel *centres* only. Instead of a bias that grows with slope,

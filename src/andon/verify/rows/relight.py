@@ -50,8 +50,9 @@ def _rows(engine: EngineName) -> tuple[Row, ...]:
     )
 
 
-def _shadow_rows(shadow_filter: Literal["none", "exact"]) -> tuple[Row, ...]:
-    name, against = f"relight.paraboloid.{shadow_filter}", f"{RAYS}; 1024² map, {shadow_filter}"
+def _shadow_rows(shadow_filter: Literal["none", "exact"], size: int) -> tuple[Row, ...]:
+    name = f"relight.paraboloid.{shadow_filter}_{size}"
+    against = f"{RAYS}; {size}² map, filter {shadow_filter}"
     return (
         Row(
             f"{name}.differ",
@@ -59,7 +60,7 @@ def _shadow_rows(shadow_filter: Literal["none", "exact"]) -> tuple[Row, ...]:
             0.1,
             "% of pixels",
             against,
-            lambda: paraboloids(shadow_filter)[0],
+            lambda: paraboloids(shadow_filter, size)[0],
         ),
         Row(
             f"{name}.beyond_two_texels",
@@ -67,7 +68,7 @@ def _shadow_rows(shadow_filter: Literal["none", "exact"]) -> tuple[Row, ...]:
             0,
             "pixels",
             f"{against}; farther than 2 map texels from a true edge, of 3.3 million",
-            lambda: paraboloids(shadow_filter)[1],
+            lambda: paraboloids(shadow_filter, size)[1],
         ),
         Row(
             f"{name}.seam",
@@ -75,7 +76,7 @@ def _shadow_rows(shadow_filter: Literal["none", "exact"]) -> tuple[Row, ...]:
             0,
             "pixels",
             f"{against}; those of them on the seam",
-            lambda: paraboloids(shadow_filter)[2],
+            lambda: paraboloids(shadow_filter, size)[2],
         ),
     )
 
@@ -89,8 +90,8 @@ ROWS: tuple[Row, ...] = (
     Row("relight.point.gpu", "relight", 1e-3, "relative", CLOSED_FORM, lambda: floor_error("gpu")),
     *_rows("reference"),
     *_rows("gpu"),
-    *_shadow_rows("exact"),
-    *_shadow_rows("none"),
+    *_shadow_rows("exact", 2048),
+    *_shadow_rows("none", 1024),
     Row(
         "relight.parity.within_5",
         "relight",

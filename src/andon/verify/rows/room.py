@@ -23,8 +23,6 @@ __all__ = ["against_radiance", "paraboloids"]
 
 Float = NDArray[np.float64]
 
-MAP_SIZE = 1024
-
 
 @cache
 def _room_frame(engine: EngineName) -> Frame:
@@ -78,12 +76,14 @@ def _near_depth_edges(depth: Float) -> NDArray[np.bool_]:
 
 
 @cache
-def paraboloids(shadow_filter: Literal["none", "exact"]) -> tuple[float, float, float]:
+def paraboloids(
+    shadow_filter: Literal["none", "exact"], map_size: int
+) -> tuple[float, float, float]:
     """Share of pixels whose shadow differs from rays; those far from an edge; on the seam."""
     visibility, casters = Visibility(room()), RayScene(room())
     view = camera_in(room(), 1280, 720)
     differing = facing = far = seam = 0
-    for lamp in room_lamps(4, Shadow(MAP_SIZE, shadow_filter)):
+    for lamp in room_lamps(4, Shadow(map_size, shadow_filter)):
         frame = Renderer(prepared_of(room(), view, (lamp,)), "gpu").render()
         surface = frame.surface
         mask = surface.valid
@@ -102,16 +102,16 @@ def paraboloids(shadow_filter: Literal["none", "exact"]) -> tuple[float, float, 
             lamp,
             visibility.visible,
             casters,
-            MAP_SIZE,
+            map_size,
             steps=9,
         )
         far += int(away.sum())
-        seam += int((away & _on_seam(points[wrong] - lamp.position_m)).sum())
+        seam += int((away & _on_seam(points[wrong] - lamp.position_m, map_size)).sum())
     return differing / facing * 100, float(far), float(seam)
 
 
-def _on_seam(reach: Float) -> NDArray[np.bool_]:
+def _on_seam(reach: Float, map_size: int) -> NDArray[np.bool_]:
     """(n,) within two texels of the circle where one paraboloid ends and the other begins."""
     distance = np.linalg.norm(reach, axis=1)
     radius = np.linalg.norm(reach[:, :2], axis=1) / (distance + np.abs(reach[:, 2]))
-    return np.abs(radius - 1) < 2 * 2 / MAP_SIZE
+    return np.abs(radius - 1) < 2 * 2 / map_size

@@ -163,12 +163,12 @@ def test_layout(name):
     assert struct.dtype.itemsize % 16 == 0
 
 
-@pytest.mark.parametrize("name", STRUCTS)
+ARRAYED = [n for n in STRUCTS if any(re.search(rf"array<{n}\b", t) for t in TEXTS.values())]
+
+
+@pytest.mark.parametrize("name", ARRAYED)
 def test_array_stride(name):
     """In an array the shader's stride is the struct's own size, so the host's must be the same."""
-    arrayed = [path for path, text in TEXTS.items() if re.search(rf"array<{name}\b", text)]
-    if not arrayed:
-        pytest.skip("never in an array")
     assert STRUCTS[name].dtype.itemsize == layout_of(STRUCTS[name].wgsl())[1]
 
 

@@ -10,7 +10,8 @@ from andon.responses import srgb_encode
 from andon.spaces import View, look_at
 from andon.verify.solids import box, panel
 
-pytest.importorskip("pygfx")
+# pygfx draws on an adapter or not at all.
+pytestmark = pytest.mark.usefixtures("gpu")
 
 RHO = np.array([0.6, 0.3, 0.1])
 
@@ -29,10 +30,7 @@ def view_from(eye, target, up=(0, 1, 0), width=128, height=72):
 
 
 def drawn(geometry, view, position, intensity, **settings):
-    try:
-        peer = PygfxRoom(geometry, view, [position], [intensity], **settings)
-    except MachineError as error:
-        pytest.skip(f"no adapter: {error}")
+    peer = PygfxRoom(geometry, view, [position], [intensity], **settings)
     try:
         return peer.luminance()
     finally:

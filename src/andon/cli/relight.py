@@ -49,6 +49,7 @@ def run(options: RelightOptions) -> None:
     check_writable(options.out, (*PICTURES, ".exr"), "--out")
     for path in options.illuminance_maps:
         check_writable(path, (".exr", ".png"), "--illuminance-map")
+    _refuse_overwriting(options)
     from andon.pipeline import Renderer
 
     renderer = Renderer(scene_of(options), options.engine)  # type: ignore[arg-type]
@@ -64,6 +65,20 @@ def run(options: RelightOptions) -> None:
     pixels = frame.image.rgb.shape[0] * frame.image.rgb.shape[1]
     print_report(frame.report, renderer.setup_seconds, pixels)
     print(options.out)
+
+
+def _refuse_overwriting(options: RelightOptions) -> None:
+    """An output must be no input, and no other output."""
+    named = (options.photo, options.depth, options.camera, options.mesh, options.scene)
+    taken = {path.resolve() for path in (*named, *options.objects) if path is not None}
+    for path in (options.out, *options.illuminance_maps):
+        if path.resolve() in taken:
+            raise InputError(
+                "is also an input or another output, and would be overwritten",
+                file=path,
+                remedy="give it another name",
+            )
+        taken.add(path.resolve())
 
 
 def scene_of(options: RelightOptions) -> Any:

@@ -37,6 +37,9 @@ def prepare_arrays(
     """See `andon.relight`."""
     if view.distortion:
         raise InputError("must be undistorted", field="view", remedy="use andon.lenses.undistort")
+    names = [lamp.name for lamp in lamps]
+    if len(set(names)) < len(names):  # shadow maps are kept by name
+        raise InputError(f"names must differ, got {names}", field="lamps", remedy="rename one")
     depth = depth_from_raw(np.asarray(depth_m, np.float64), view, DepthEncoding())
     ambient = Ambient(_lux(ambient_lux, view), _dimming(dimming))
     frame = frame_from_picture(

@@ -24,7 +24,7 @@ from andon.surface.model import EMPTY_GEOMETRY, ShadowBias, SurfaceModel
 from andon.surface.normals import normals_from_depth
 from andon.surface.occluder import decimated, merged
 from andon.surface.textures import with_linear_textures
-from andon.surface.triangulate import triangulate_depth
+from andon.surface.triangulate import thickened, triangulate_depth
 
 __all__ = ["load_surface", "object_geometry", "surface_of_depth", "surface_of_mesh"]
 
@@ -80,8 +80,11 @@ def _from_depth(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
         table.kind, table.scale_to_m, table.baseline_m, table.doffs_px, tuple(table.invalid)
     )
     seen_by = view if table.focal_px is None else replace(view, fx=table.focal_px)
-    depth = depth_from_raw(read_depth_array(path), seen_by, encoding, file=str(path))
-    depth = undistort(depth, view, method="nearest")
+    raw = read_depth_array(path)
+    if raw.shape == view.shape:
+        # First: distance becomes depth by the directions of the *undistorted* pixels.
+        raw = undistort(raw, view, method="nearest")
+    depth = depth_from_raw(raw, seen_by, encoding, file=str(path))
     given = None if scene.surface.normals is None else _read_normals(scene, view)
     return surface_of_depth(
         depth,
@@ -126,10 +129,14 @@ def surface_of_depth(
             field="surface.depth",
             remedy="check kind and scale_to_m",
         )
-    closed = real
-    if thickness_m is not None or not is_whole:
-        closed = triangulate_depth(depth, view, max_jump=max_jump, thickness_m=thickness_m)
-    occluder = decimated(closed, occluder_triangles, view.position)
+    sheet = real if is_whole else triangulate_depth(depth, view, max_jump=max_jump)
+    # The sheet alone is thinned and judged: nobody sees its back. Closing it adds a back and walls,
+    # which a third of the budget leaves room for.
+    budget = occluder_triangles if thickness_m is None else occluder_triangles // 3
+    occluder = decimated(sheet, budget, view.position)
+    if thickness_m is not None:
+        closed = thickened(occluder.geometry, view.position, thickness_m)
+        occluder = replace(occluder, geometry=closed)
     bias = max(DEPTH_BIAS_M, DECIMATION_MARGIN * occluder.error_m)
     name = view.name
     return SurfaceModel(real, {name: depth}, {name: normals}, occluder=occluder, bias=_bias(bias))

@@ -56,15 +56,27 @@ def decimated(geometry: Geometry, max_triangles: int, eye: NDArray[Any]) -> Occl
         target_count=max_triangles,
     )
     fewer = Geometry(np.asarray(points, np.float64), np.asarray(triangles, np.int32))
-    after = RayScene(fewer)
+    before, after = RayScene(geometry), RayScene(fewer)
     # Errors at vertices, where they are largest; losses at middles of triangles, since a ray
     # through a vertex on the rim meets the rim only by chance.
-    errors = _errors_m(after, _thinned(geometry.positions), eye)
-    middles = geometry.positions[_thinned(geometry.triangles)].mean(axis=1)
-    lost = ~np.isfinite(_errors_m(after, middles, eye))
+    # Only what the eye sees is asked: before a hidden vertex stands something else, not an error.
+    corners = _seen(before, _thinned(geometry.positions), eye)
+    middles = _seen(before, geometry.positions[_thinned(geometry.triangles)].mean(axis=1), eye)
+    errors = _errors_m(after, corners, eye)
     found = errors[np.isfinite(errors)]
-    error_m = float(np.percentile(found, 95)) if len(found) else float("inf")
-    return Occluder(fewer, count, error_m, float(lost.mean()))
+    if not len(found) or not len(middles):
+        return Occluder(geometry, count, 0.0)  # nothing to judge the decimation by: keep all
+    lost = ~np.isfinite(_errors_m(after, middles, eye))
+    return Occluder(fewer, count, float(np.percentile(found, 95)), float(lost.mean()))
+
+
+# A point counts as seen if the ray to it ends there, within this share of its distance.
+SAME_PLACE = 1e-3
+
+
+def _seen(scene: RayScene, points: NDArray[Any], eye: NDArray[Any]) -> NDArray[Any]:
+    distance = np.linalg.norm(points - eye, axis=1)
+    return points[_errors_m(scene, points, eye) <= SAME_PLACE * distance]
 
 
 def _thinned(rows: NDArray[Any]) -> NDArray[Any]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from andon.quantities import Geometry
 from andon.spaces import View, transform_points
 
-__all__ = ["triangulate_depth"]
+__all__ = ["thickened", "triangulate_depth"]
 
 Float = NDArray[np.float64]
 
@@ -78,3 +78,10 @@ def _thicken(
     )
     both = np.concatenate([triangles, triangles[:, ::-1] + count, walls])
     return np.concatenate([points, points + unit * thickness_m]), both
+
+
+def thickened(sheet: Geometry, eye: Float, thickness_m: float, /) -> Geometry:
+    """The sheet doubled `thickness_m` behind itself as seen from `eye` (3,), rims closed."""
+    triangles = sheet.triangles.astype(np.int64)
+    points, closed = _thicken(sheet.positions, triangles, sheet.positions - eye, thickness_m)
+    return Geometry(points, closed.astype(np.int32))

@@ -88,8 +88,9 @@ fn directional_texel_lit(point: Receiver, texel: vec2i) -> bool {
   let facing = min(dot(record.axis, point.normal), -1e-4);
   // `away` is the bias here: parallel light has no distance.
   let depth = dot(record.axis, point.reach) + (point.away - dot(across, centre - place)) / facing;
-  let stored = 0.5 - textureLoad(planes, texel, max(point.layer, 0), 0);
-  return depth <= (stored + 1e-6) * record.depth_range_m;
+  let held = textureLoad(planes, texel, max(point.layer, 0), 0);
+  // 0 is what the map was cleared to: nothing stands there.
+  return held <= 0.0 || depth <= (0.5 - held + 1e-6) * record.depth_range_m;
 }
 
 fn directional_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {

@@ -69,3 +69,13 @@ def test_outputs_never_overwrite_inputs_or_each_other(tmp_path, capsys):
     assert _run(["relight", same, "-o", out, "--illuminance-map", out], debug=False) == 2
     assert "overwritten" in capsys.readouterr().err
     assert photo.read_bytes() == b"mine"
+
+
+@pytest.mark.usefixtures("gpu")
+@pytest.mark.parametrize("engine", ["gpu", "reference"])
+def test_a_lamp_exactly_at_the_eye_has_no_disc_and_does_not_crash(engine):
+    lamp = PointLamp("here", np.zeros(3), np.ones(3), visible_radius_m=0.05)
+    photo, depth = np.full((120, 160, 3), 99, np.uint8), np.full((120, 160), 2.0)
+    frame = relight(photo, VIEW, [lamp], depth_m=depth, ambient_lux=100.0, engine=engine)
+    assert np.isfinite(np.asarray(frame.luminance.cd_m2)).all()
+    assert frame.image.rgb.max() < 120

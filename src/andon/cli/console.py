@@ -43,7 +43,7 @@ def print_report(report: Report, setup_seconds: Mapping[str, float], pixels: int
     seconds: dict[str, Any] = {**setup_seconds, **report.stage_seconds}
     table.add_row("stages", " · ".join(f"{k} {v * 1e3:.0f} ms" for k, v in seconds.items()))
     table.add_row("photometry", report.photometry)
-    table.add_row("holes", f"{report.hole_pixels / pixels:.1%} of the pixels stay as they were")
+    table.add_row("holes", f"{report.hole_pixels / pixels:.1%} of the pixels get no added light")
     table.add_row("clipped", f"{report.clipped_pixels / pixels:.1%} of the photograph is clipped")
     if report.occluder_triangles:
         table.add_row(

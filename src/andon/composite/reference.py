@@ -74,6 +74,8 @@ def draw_lamps(luminance: Float, surface: Surface, lamps: Sequence[Lamp], /) -> 
         return luminance
     view = surface.view
     origin, directions = view.rays_world()
+    # A lamp exactly at the eye lies in no direction.
+    drawn = [x for x in drawn if np.linalg.norm(x.position_m - origin) > 0]
     pixel_angle = np.sqrt(view.solid_angles())
     distance = _distance(surface, view)
     for lamp in sorted(drawn, key=lambda x: -float(np.linalg.norm(x.position_m - origin))):

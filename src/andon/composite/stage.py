@@ -103,6 +103,8 @@ class CompositeStage:
         """Records the visible lamps over `target`, far to near, each within its own rectangle."""
         eye = self.view.position
         drawn = [x for x in lamps if isinstance(x, PointLamp) and x.visible_radius_m > 0]
+        # A lamp exactly at the eye lies in no direction.
+        drawn = [x for x in drawn if np.linalg.norm(x.position_m - eye) > 0]
         drawn.sort(key=lambda x: -float(np.linalg.norm(x.position_m - eye)))
         rectangles = [disc_rectangle(self.view, x.position_m, x.visible_radius_m) for x in drawn]
         if not any(rectangles):

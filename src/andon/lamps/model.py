@@ -30,10 +30,16 @@ class Shadow:
     map_size : texels along a side of the shadow map, 16…8192.
     filter : ``none`` hard, ``linear`` blended over one texel, ``exact`` the triangles' own
         edges (point and spot lamps; sixteen reads instead of one; directional lamps: linear).
+    samples : of an area lamp: points on it from which shadows are looked at, 1…64; the penumbra
+        is their mean.
+    through : names of the caster groups that do not hide this lamp: its own shell, ``real``,
+        ``objects``, or the name of another body.
     """
 
     map_size: int = 1024
     filter: Literal["none", "linear", "exact"] = "linear"
+    samples: int = 1
+    through: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

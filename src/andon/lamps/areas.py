@@ -1,0 +1,101 @@
+"""Lamps with an area: Lambertian emitters of one luminance, or of one for each triangle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.lamps.model import Shadow
+
+__all__ = ["AreaLamp", "DiskLamp", "MeshLamp", "PolygonLamp", "SphereLamp", "TubeLamp"]
+
+Float = NDArray[np.float64]
+
+# Points on an area lamp from which its shadow is looked at, and the maps that they see. Edges of
+# neighbouring points lie closer than a texel of so small a map in most penumbrae, so that their
+# steps melt into one another.
+SOFT_SHADOW = Shadow(map_size=256, samples=16)
+
+
+@dataclass(frozen=True)
+class AreaLamp:
+    """What all area lamps share.
+
+    Attributes
+    ----------
+    name : unique in the scene.
+    luminance_cd_m2 : (3,) cd/m² per channel, the same in all directions.
+    shadow : None for a lamp that casts none.
+    drawn : the area is seen in the picture.
+    """
+
+    name: str
+    luminance_cd_m2: Float
+    shadow: Shadow | None = field(default=SOFT_SHADOW, kw_only=True)
+    drawn: bool = field(default=True, kw_only=True)
+
+
+@dataclass(frozen=True)
+class SphereLamp(AreaLamp):
+    """A glowing ball: `position_m` (3,) of its centre, `radius_m` > 0."""
+
+    position_m: Float
+    radius_m: float
+
+
+@dataclass(frozen=True)
+class DiskLamp(AreaLamp):
+    """A flat round lamp.
+
+    `position_m` (3,) centre, `direction` (3,) unit normal of the emitting side, `radius_m` > 0.
+    """
+
+    position_m: Float
+    direction: Float
+    radius_m: float
+    two_sided: bool = False
+
+
+@dataclass(frozen=True)
+class PolygonLamp(AreaLamp):
+    """A flat polygon.
+
+    Attributes
+    ----------
+    vertices_m : (k, 3) metres, k ≥ 3, counter-clockwise as seen from the emitting side.
+    two_sided : emits to both sides.
+    texture : (h, w, 3) factors on the luminance, mean 1, or None; of a rectangle only: row 0 runs
+        from vertex 3 to vertex 2 (the top), the last row from vertex 0 to vertex 1.
+    """
+
+    vertices_m: Float
+    two_sided: bool = False
+    texture: Float | None = None
+
+
+@dataclass(frozen=True)
+class TubeLamp(AreaLamp):
+    """A capsule: all points within `radius_m` of the line between `ends_m` (2, 3)."""
+
+    ends_m: Float
+    radius_m: float
+
+
+@dataclass(frozen=True)
+class MeshLamp(AreaLamp):
+    """Triangles that emit to the side on which they run counter-clockwise.
+
+    Its facets do not hide one another: exact for convex meshes.
+
+    Attributes
+    ----------
+    positions_m : (n, 3) metres, world.
+    triangles : (m, 3) int32.
+    facet_luminance_cd_m2 : (m, 3) cd/m² of each triangle; None: `luminance_cd_m2` for all.
+    """
+
+    positions_m: Float
+    triangles: NDArray[np.int32]
+    facet_luminance_cd_m2: Float | None = None

@@ -1,0 +1,36 @@
+"""Luminous bodies as things: what is seen of a lamp, and what it hides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.quantities import Geometry
+
+__all__ = ["Body"]
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Body:
+    """A shell, or the emitting area of a lamp, at one moment.
+
+    Attributes
+    ----------
+    name : of the lamp that it belongs to; also the caster group of its triangles.
+    geometry : triangles in the world, counter-clockwise from outside.
+    outside_cd_m2, inside_cd_m2 : (n, 3) luminance of each vertex by the lamp's own light, seen
+        from outside and from inside.
+    reflectance : (3,) diffuse reflectance for the light of other lamps, both sides.
+    casts_shadow : hides other lamps.
+    """
+
+    name: str
+    geometry: Geometry
+    outside_cd_m2: Float
+    inside_cd_m2: Float
+    reflectance: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    casts_shadow: bool = True

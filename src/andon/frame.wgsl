@@ -20,12 +20,15 @@
 
 fn added_lux(point: SurfacePoint) -> vec3f {
   let bias = select(direct.bias_real_m, direct.bias_object_m, (point.flags & OBJECT) != 0u);
-  let lux = illuminance(point.position, point.normal, bias);
+  let lux = illuminance(point.position, point.normal, bias, point.flags >> BODY_SHIFT);
   return select(vec3f(0.0), lux, (point.flags & VALID) != 0u);
 }
 
+// The pictures below are half floats: what exceeds them is far beyond any display's white.
+const MOST: vec3f = vec3f(65504.0);
+
 fn objects(point: SurfacePoint, lux: vec3f, real: vec3f) -> vec3f {
-  let material = min(point.flags >> MATERIAL_SHIFT, 255u);
+  let material = min((point.flags >> MATERIAL_SHIFT) & 0xffffu, 255u);
   let virtual_linear = object_linear(point.reflectance, emitted[material].xyz, lux, ambient);
   return select(real, virtual_linear, (point.flags & OBJECT) != 0u);
 }
@@ -37,14 +40,14 @@ fn point_at(pixel: vec2f) -> SurfacePoint {
 @fragment fn relit(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
   let lux = added_lux(point_at(pixel.xy));
   let light = textureLoad(captured, vec2i(pixel.xy), 0).xyz;
-  return vec4f(relit_linear(light, lux, ambient), 1.0);
+  return vec4f(min(relit_linear(light, lux, ambient), MOST), 1.0);
 }
 
 @fragment fn relit_with_objects(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
   let point = point_at(pixel.xy);
   let lux = added_lux(point);
   let light = textureLoad(captured, vec2i(pixel.xy), 0).xyz;
-  return vec4f(objects(point, lux, relit_linear(light, lux, ambient)), 1.0);
+  return vec4f(min(objects(point, lux, relit_linear(light, lux, ambient)), MOST), 1.0);
 }
 
 @fragment fn relit_with_maps(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
@@ -52,7 +55,7 @@ fn point_at(pixel: vec2f) -> SurfacePoint {
   let lux = added_lux(point);
   let at = vec2i(pixel.xy);
   let real = relit_by_maps(textureLoad(captured, at, 0).xyz, textureLoad(per_lux, at, 0).xyz, lux);
-  return vec4f(objects(point, lux, real), 1.0);
+  return vec4f(min(objects(point, lux, real), MOST), 1.0);
 }
 
 @fragment fn illuminance_map(@builtin(position) pixel: vec4f) -> @location(0) vec4f {

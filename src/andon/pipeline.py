@@ -141,9 +141,9 @@ class Renderer:
         engine, prepared = self._engine, self.prepared
         frame = prepared.frames[self._view_name(view)]
         clock = _Clock(engine.finish if timed else None)
-        lamps = prepared.lamps(time_seconds)
-        seen = clock.time("surface", lambda: engine.see(frame.view.name))
-        light = clock.time("direct", lambda: engine.illuminate(seen, lamps))
+        lamps, bodies = prepared.lamps(time_seconds), prepared.bodies(time_seconds)
+        seen = clock.time("surface", lambda: engine.see(frame.view.name, bodies))
+        light = clock.time("direct", lambda: engine.illuminate(seen, lamps, bodies))
         luminance = clock.time("composite", lambda: engine.compose(frame, seen, light, lamps))
         image = clock.time("display", lambda: engine.encode(frame, luminance))
         engine.finish()

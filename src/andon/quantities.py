@@ -30,6 +30,7 @@ __all__ = [
     "Material",
     "Photometry",
     "Surface",
+    "merged",
     "photometric",
 ]
 
@@ -115,6 +116,20 @@ class Geometry:
     materials: tuple[Material, ...] = (Material(),)
 
 
+def merged(*parts: Geometry) -> Geometry:
+    """One geometry from several; normals, textures and materials are left behind."""
+    offsets = np.cumsum([0, *(len(part.positions) for part in parts)])
+    return Geometry(
+        np.concatenate([np.zeros((0, 3)), *(part.positions for part in parts)]),
+        np.concatenate(
+            [
+                np.zeros((0, 3), np.int32),
+                *(part.triangles + offset for part, offset in zip(parts, offsets, strict=False)),
+            ]
+        ).astype(np.int32),
+    )
+
+
 @dataclass(frozen=True)
 class Surface:
     """The illuminated surface as one view sees it (a G-buffer).
@@ -130,6 +145,7 @@ class Surface:
     material_id : (H, W) int32, −1 in holes and on depth images.
     emitted_cd_m2 : (H, W, 3) float64, what the surface emits by itself.
     view : where the pixels look.
+    body_id : (H, W) int32, which of the luminous bodies is seen, −1 elsewhere; None: nowhere.
     """
 
     position: NDArray[np.float64]
@@ -141,6 +157,7 @@ class Surface:
     material_id: NDArray[np.int32]
     emitted_cd_m2: NDArray[np.float64]
     view: View
+    body_id: NDArray[np.int32] | None = None
 
     @property
     def holes(self) -> int:

@@ -32,6 +32,7 @@ __all__ = [
     "View",
     "invert_rigid",
     "look_at",
+    "perpendicular",
     "rotate",
     "transform_points",
 ]
@@ -261,3 +262,11 @@ class View:
     def rays_world(self) -> tuple[Float, Float]:
         """Origin (3,) and unit directions (H, W, 3) of the pixels' rays in the world."""
         return self.position, rotate(self.world_from_camera, self.directions())
+
+
+def perpendicular(axis: NDArray[np.float64], /) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Two unit vectors that form a right-handed frame (right, down, axis) with `axis` (3,)."""
+    helper = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    right = np.cross(helper, axis)
+    right /= np.linalg.norm(right)
+    return right, np.cross(axis, right)

@@ -9,10 +9,11 @@ from andon.gpu import wgsl
 from andon.gpu.layout import HostStruct
 from andon.gpu.passes import shader_module
 from andon.lamps import DirectionalLamp, PointLamp, SkyLamp, SpotLamp
+from andon.lamps.areas import AreaLamp, DiskLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.surface.stage import PLAIN, TEXTURED
-from andon.transport.direct.records import sorted_lamps
 from andon.transport.direct.shadows.face_maps import DISTANCE, TRIANGLE
-from andon.transport.direct.stage import FILTER, SUM, sum_of_lamps
+from andon.transport.direct.stage import FILTER, SUM
+from andon.transport.direct.sum import sum_of_lamps
 
 from .tree import modules
 
@@ -24,15 +25,35 @@ TEXTS = {path: wgsl._read(path) for path in MODULES}
 PROGRAMS = [path for path in MODULES if ENTRY_POINT.search(TEXTS[path])]
 
 DOWN, GREY = np.array([0.0, -1.0, 0.0]), np.ones(3)
-ONE_OF_EACH = sorted_lamps(
-    [
-        PointLamp("point", DOWN, GREY),
-        SpotLamp("spot", DOWN, GREY, outer_radians=0.5),
-        SpotLamp("wide", DOWN, GREY, outer_radians=1.5),
-        DirectionalLamp("sun", DOWN, GREY),
-        SkyLamp("sky", -DOWN, GREY),
-    ]
-)
+LIGHT = np.ones(3)
+SQUARE = np.array([[0, 1, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1.0]])
+ONE_OF_EACH = [
+    PointLamp("point", DOWN, GREY),
+    SpotLamp("spot", DOWN, GREY, outer_radians=0.5),
+    SpotLamp("wide", DOWN, GREY, outer_radians=1.5),
+    DirectionalLamp("sun", DOWN, GREY),
+    SkyLamp("sky", -DOWN, GREY),
+    SphereLamp("sphere", LIGHT, DOWN, 0.1, body="shell"),
+    DiskLamp("disk", LIGHT, DOWN, DOWN, 0.1),
+    DiskLamp("both sides", LIGHT, DOWN, DOWN, 0.1, True, shadow=None),
+    TubeLamp("tube", LIGHT, SQUARE[:2], 0.1),
+    PolygonLamp("polygon", LIGHT, SQUARE),
+]
+
+
+def summed(lamps):
+    soft = [lamp.name for lamp in lamps if isinstance(lamp, AreaLamp)]
+    return sum_of_lamps(
+        lamps,
+        ["shell"],
+        layers={"point": 0},
+        samples={name: 16 * i for i, name in enumerate(soft)},
+        edges={"polygon": (0, 4)},
+        map_size=1024,
+        soft_map_size=256,
+        triangles=5,
+    )
+
 
 PROJECTION = "andon/gbuffer/projections/{}.wgsl"
 VARIANTS = {
@@ -42,8 +63,8 @@ VARIANTS = {
     "linear filter": {FILTER.format("none"): FILTER.format("linear")},
     "exact filter": {FILTER.format("none"): FILTER.format("exact"), DISTANCE: TRIANGLE},
     "textures": {PLAIN: TEXTURED},
-    "one lamp of each kind": {SUM: sum_of_lamps(ONE_OF_EACH, {"point": 0}, 1024, 5)},
-    "no lamps": {SUM: sum_of_lamps([[], [], [], [], []], {}, 2, 0)},
+    "one lamp of each kind": {SUM: summed(ONE_OF_EACH)},
+    "no lamps": {SUM: summed([])},
 }
 
 

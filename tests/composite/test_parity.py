@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from andon import relight
+from andon.composite.lamp_pictures import disc_rectangle
 from andon.composite.model import Ambient
-from andon.composite.stage import MAX_DISCS, disc_rectangle
 from andon.display.model import Exposure
 from andon.engines.prepared import Prepared
 from andon.lamps import PointLamp, SkyLamp, SpotLamp
@@ -17,6 +17,7 @@ from andon.responses import LINEAR, SRGB, Response
 from andon.spaces import View, look_at
 from andon.surface.load import surface_of_depth
 from andon.surface.model import SurfaceModel
+from andon.transport.direct.records import MAX_LAMPS
 from comparison import assert_agree, assert_same_picture
 from worlds import ALL_CODES, ball, sphere_depth
 
@@ -162,7 +163,7 @@ def test_discs_agree_in_every_projection(gpu, name):
 
 
 def test_more_visible_lamps_than_there_are_slots(engine):
-    count = MAX_DISCS + 3
+    count = MAX_LAMPS + 3
     lamps = [
         PointLamp(f"{i}", np.array([0.02 * (i - 30), 0, -1.0]), np.ones(3), None, 0.01)
         for i in range(count)
@@ -172,7 +173,7 @@ def test_more_visible_lamps_than_there_are_slots(engine):
         return
     from andon.errors import AndonError
 
-    with pytest.raises(AndonError, match=str(MAX_DISCS)):
+    with pytest.raises(AndonError, match=str(MAX_LAMPS)):
         drawn(engine, lamps=lamps)
 
 

@@ -5,13 +5,17 @@ import pytest
 
 from andon.lamps import DirectionalLamp, HemisphereLamp, PointLamp, SkyLamp, SpotLamp
 from andon.quantities import Geometry
-from andon.rays import RayScene
+from andon.transport.direct.casters import REAL, Casters, ShadowRays
 from andon.transport.direct.reference import illuminance, visibility
 from andon.verify.rows.closed_forms import point_reference
 from worlds import ball, block, unit
 
 UP = np.array([0.0, 1.0, 0.0])
 GREY = np.ones(3)
+
+
+def rays(geometry):
+    return ShadowRays(Casters(((REAL, geometry),)))
 
 
 def test_point_spot_and_directional_from_zenith_past_the_horizon():
@@ -71,7 +75,7 @@ def test_hemisphere_adds_the_ground():
 
 def test_the_shadow_of_a_square_has_the_size_that_similar_triangles_give_it():
     corners = np.array([[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1.0]])
-    square = RayScene(Geometry(corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32)))
+    square = rays(Geometry(corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32)))
     x = np.linspace(-4, 4, 801) + 1e-4
     points = np.stack([x, np.zeros_like(x), np.zeros_like(x)], axis=1)
     lit = visibility(PointLamp("p", 2.0 * UP, GREY), points, square)
@@ -81,7 +85,7 @@ def test_the_shadow_of_a_square_has_the_size_that_similar_triangles_give_it():
 
 
 def test_lamps_without_shadow_and_ambient_lamps_are_seen_from_everywhere():
-    casters = RayScene(block((9, 0.1, 9), (0, 1, 0)))
+    casters = rays(block((9, 0.1, 9), (0, 1, 0)))
     points = np.zeros((5, 3))
     for lamp in (PointLamp("p", 2 * UP, GREY, None), SkyLamp("s", UP, GREY)):
         assert visibility(lamp, points, casters).all()
@@ -89,5 +93,5 @@ def test_lamps_without_shadow_and_ambient_lamps_are_seen_from_everywhere():
 
 
 def test_no_casters_no_shadow():
-    empty = RayScene(Geometry(np.zeros((0, 3)), np.zeros((0, 3), np.int32)))
+    empty = rays(Geometry(np.zeros((0, 3)), np.zeros((0, 3), np.int32)))
     assert visibility(PointLamp("p", UP, GREY), np.zeros((3, 3)), empty).all()

@@ -25,13 +25,13 @@ def _steady(renderer: Renderer) -> Callable[[], None]:
     """G-buffer, shading and composite of one frame, maps kept; without the display."""
     engine = renderer._engine  # pyright: ignore[reportPrivateUsage]
     prepared = renderer.prepared
-    lamps = prepared.lamps(0.0)
+    lamps, bodies = prepared.lamps(0.0), prepared.bodies(0.0)
     name = renderer.view_names[0]
     frame = prepared.frames[name]
 
     def step() -> None:
-        seen = engine.see(name)
-        engine.compose(frame, seen, engine.illuminate(seen, lamps), lamps)
+        seen = engine.see(name, bodies)
+        engine.compose(frame, seen, engine.illuminate(seen, lamps, bodies), lamps)
         engine.finish()
 
     return step

@@ -8,7 +8,12 @@
 @group(0) @binding(1) var<uniform> view: ViewRecord;
 @group(1) @binding(0) var<uniform> disc: DiscRecord;
 
-@fragment fn lamp_disc(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+struct DiscPictures {
+  @location(0) luminance: vec4f,
+  @location(1) bodies: vec4f,
+};
+
+@fragment fn lamp_disc(@builtin(position) pixel: vec4f) -> DiscPictures {
   let packed = textureLoad(gbuffer, vec2i(pixel.xy), 0);
   let ray = ray_planar(pixel.xy);
   let surface_m = select(1e30, bitcast<f32>(packed.x) * length(ray), (packed.w & VALID) != 0u);
@@ -22,5 +27,6 @@
   let pixel_angle = sqrt(max(length(cross(along_x, along_y)), 1e-16));
   let cover = clamp((disc.radius_radians - angle) / pixel_angle + 0.5, 0.0, 1.0);
   let seen = cover * select(0.0, 1.0, disc.distance_m < surface_m);
-  return vec4f(disc.linear * seen, seen);
+  let linear = vec4f(min(disc.linear, vec3f(65504.0)) * seen, seen);
+  return DiscPictures(linear, linear);
 }

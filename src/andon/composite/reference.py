@@ -3,35 +3,58 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite.model import Ambient
 from andon.lamps import Lamp, PointLamp, SpotLamp
+from andon.lamps.areas import SphereLamp
 from andon.lamps.distributions import spot_attenuation
 from andon.quantities import CameraFrame, Surface
 from andon.spaces import View
 
-__all__ = ["compose", "draw_lamps", "lamp_luminance", "object_luminance", "relit_linear"]
+__all__ = [
+    "Disc",
+    "bodies_luminance",
+    "compose",
+    "disc_of",
+    "draw_lamps",
+    "drawn_lamps",
+    "lamp_luminance",
+    "object_luminance",
+    "relit_linear",
+]
 
 Float = NDArray[np.float64]
 
 
 def relit_linear(frame: CameraFrame, ambient: Ambient, added_lux: Float, /) -> Float:
-    """Linear camera values (H, W, 3) under the new light: captured × (dimming·E0 + ΔE)/E0."""
+    """Linear camera values (H, W, 3) under the new light: captured × (dimming·E0 + ΔE)/E0.
+
+    Where light is taken away ΔE is negative; no light at all is the least that is left.
+    """
     captured = np.asarray(frame.linear, np.float64)
     dimming = np.asarray(ambient.dimming)
     if ambient.dimming_mode == "linear":
-        return captured * (dimming + added_lux / ambient.illuminance_lux)
+        return captured * np.maximum(dimming + added_lux / ambient.illuminance_lux, 0)
     dimmed = frame.response.decode(dimming * frame.response.encode(captured))
-    return dimmed + captured * (added_lux / ambient.illuminance_lux)
+    return np.maximum(dimmed + captured * (added_lux / ambient.illuminance_lux), 0)
 
 
 def object_luminance(surface: Surface, ambient: Ambient, added_lux: Float, /) -> Float:
     """Luminance (H, W, 3) in cd/m² of diffuse virtual objects: ρ·E/π plus what they emit."""
-    received = np.asarray(ambient.dimming) * ambient.mean_lux + added_lux
+    received = np.maximum(np.asarray(ambient.dimming) * ambient.mean_lux + added_lux, 0)
     return surface.reflectance * received / np.pi + surface.emitted_cd_m2
+
+
+def bodies_luminance(surface: Surface, lamps: Sequence[Lamp], /) -> Float:
+    """Luminance (H, W, 3) in cd/m² of luminous bodies and visible lamps alone; 0 elsewhere."""
+    alone = np.zeros((*surface.view.shape, 3))
+    if surface.body_id is not None:
+        alone = np.where(surface.body_id[..., None] >= 0, surface.emitted_cd_m2, 0.0)
+    return draw_lamps(alone, surface, lamps)
 
 
 def compose(
@@ -64,27 +87,52 @@ def lamp_luminance(lamp: PointLamp, eye: Float, /) -> Float:
     return intensity / (np.pi * lamp.visible_radius_m**2)
 
 
+@dataclass(frozen=True)
+class Disc:
+    """A lamp as it is drawn: `position_m` (3,), `radius_m`, and `luminance_cd_m2` (3,)."""
+
+    position_m: Float
+    radius_m: float
+    luminance_cd_m2: Float
+
+
+def disc_of(lamp: Lamp, eye: Float, /) -> Disc | None:
+    """The disc that `lamp` is drawn as for `eye` (3,); None for what is not drawn so."""
+    if isinstance(lamp, SphereLamp) and lamp.drawn:
+        return Disc(lamp.position_m, lamp.radius_m, lamp.luminance_cd_m2)
+    if not isinstance(lamp, PointLamp) or lamp.visible_radius_m <= 0:
+        return None
+    return Disc(lamp.position_m, lamp.visible_radius_m, lamp_luminance(lamp, eye))
+
+
+def drawn_lamps(lamps: Sequence[Lamp], eye: Float, /) -> list[Disc]:
+    """The discs of a picture, far to near."""
+    # A lamp exactly at the eye lies in no direction.
+    away = [(lamp, getattr(lamp, "position_m", eye) - eye) for lamp in lamps]
+    found = [disc_of(lamp, eye) for lamp, reach in away if np.linalg.norm(reach) > 0]
+    discs = [disc for disc in found if disc is not None]
+    return sorted(discs, key=lambda disc: -float(np.linalg.norm(disc.position_m - eye)))
+
+
 def draw_lamps(luminance: Float, surface: Surface, lamps: Sequence[Lamp], /) -> Float:
     """The picture with visible lamps in it: discs, hidden by whatever is nearer.
 
     A hole hides nothing. The rim is blended over one pixel's angle.
     """
-    drawn = [x for x in lamps if isinstance(x, PointLamp) and x.visible_radius_m > 0]
-    if not drawn:
-        return luminance
     view = surface.view
+    discs = drawn_lamps(lamps, view.position)
+    if not discs:
+        return luminance
     origin, directions = view.rays_world()
-    # A lamp exactly at the eye lies in no direction.
-    drawn = [x for x in drawn if np.linalg.norm(x.position_m - origin) > 0]
     pixel_angle = np.sqrt(view.solid_angles())
     distance = _distance(surface, view)
-    for lamp in sorted(drawn, key=lambda x: -float(np.linalg.norm(x.position_m - origin))):
-        reach = lamp.position_m - origin
+    for disc in discs:
+        reach = disc.position_m - origin
         away = float(np.linalg.norm(reach))
-        radius = np.arcsin(min(1.0, lamp.visible_radius_m / away))
+        radius = np.arcsin(min(1.0, disc.radius_m / away))
         angle = _angle_between(directions, reach / away)
         cover = np.clip((radius - angle) / pixel_angle + 0.5, 0, 1) * (away < distance)
-        luminance = luminance + cover[..., None] * (lamp_luminance(lamp, origin) - luminance)
+        luminance = luminance + cover[..., None] * (disc.luminance_cd_m2 - luminance)
     return luminance
 
 

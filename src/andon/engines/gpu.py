@@ -16,6 +16,7 @@ from andon.gpu.device import open_gpu
 from andon.gpu.passes import FullscreenPass
 from andon.gpu.textures import Texture, make_texture
 from andon.lamps import Lamp
+from andon.lamps.bodies import Body
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface.stage import GpuSurface, SurfaceStage
 from andon.transport.direct import stage as direct
@@ -32,8 +33,9 @@ class _View:
     def __init__(self, engine: GpuEngine, frame: CameraFrame) -> None:
         gpu, prepared = engine.gpu, engine.prepared
         self.frame = frame
+        self.has_lamps = False
         view = frame.view
-        self.surface = SurfaceStage(gpu, prepared.surface, view)
+        self.surface = SurfaceStage(gpu, prepared.surface, view, engine.bodies)
         seen = self.surface.surface
         self.composite = composite.CompositeStage(
             gpu,
@@ -68,7 +70,7 @@ class _View:
     def _entry_point(self, prepared: Prepared) -> str:
         if self.composite.has_maps:
             return "relit_with_maps"
-        has_objects = len(prepared.surface.objects.triangles) > 0
+        has_objects = len(prepared.surface.objects.triangles) > 0 or self.surface.has_bodies
         return "relit_with_objects" if has_objects else "relit"
 
 
@@ -85,10 +87,12 @@ class GpuEngine:
         self.adapter = self.gpu.adapter_name
         self.prepared = prepared
         bias = prepared.surface.bias
+        self.bodies = prepared.bodies(0.0)
         self.direct = direct.DirectStage(
             self.gpu,
-            prepared.surface.shadow_casters,
+            prepared.casters(self.bodies),
             prepared.lamps(0.0),
+            [body.name for body in self.bodies],
             bias_real_m=bias.real_m,
             bias_object_m=bias.object_m,
         )
@@ -103,13 +107,14 @@ class GpuEngine:
             self._encoder = self.gpu.device.create_command_encoder(label="frame")
         return self._encoder
 
-    def see(self, view_name: str) -> GpuSurface:
+    def see(self, view_name: str, bodies: Sequence[Body]) -> GpuSurface:
         """Records the drawing of the G-buffer."""
-        return self._views[view_name].surface.encode(self.encoder)
+        return self._views[view_name].surface.encode(self.encoder, bodies)
 
-    def illuminate(self, seen: GpuSurface, lamps: Sequence[Lamp]) -> _View:
+    def illuminate(self, seen: GpuSurface, lamps: Sequence[Lamp], bodies: Sequence[Body]) -> _View:
         """Brings shadow maps and lamps up to date; shared by both eyes."""
-        self.maps_redrawn = self.direct.encode(self.encoder, lamps)
+        casters = self.prepared.casters(bodies)
+        self.maps_redrawn = self.direct.encode(self.encoder, lamps, casters)
         return self._views[seen.view.name]
 
     def compose(
@@ -117,8 +122,8 @@ class GpuEngine:
     ) -> Texture:
         """Records direct light and composite in one pass, then the visible lamps."""
         light.relit.encode(self.encoder, [light.luminance.view])
-        light.composite.encode_lamps(
-            self.encoder, light.luminance.view, lamps, frame.luminance_per_unit
+        light.has_lamps = light.composite.lamps.encode(
+            self.encoder, light.luminance.view, seen, lamps, frame.luminance_per_unit
         )
         return light.luminance
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -15,6 +15,7 @@ from andon.errors import InputError
 from andon.files.cameras import read_camera
 from andon.files.pictures import Picture, read_picture
 from andon.lamps import Lamp, PointLamp, resolve_lamps
+from andon.lamps.bodies import Body
 from andon.quantities import CameraFrame, Photometry, photometric
 from andon.responses import LINEAR, SRGB, Response
 from andon.scene import Scene
@@ -22,6 +23,7 @@ from andon.spaces import View
 from andon.surface.inside import is_buried
 from andon.surface.load import load_surface
 from andon.surface.model import SurfaceModel
+from andon.transport.direct.casters import OBJECTS, REAL, Casters
 
 __all__ = ["Prepared", "prepare"]
 
@@ -38,6 +40,11 @@ LATER_KEYS = {
 }
 
 
+def nobody(time_seconds: float, /) -> tuple[Body, ...]:
+    """No luminous bodies at any time."""
+    return ()
+
+
 @dataclass(frozen=True)
 class Prepared:
     """A scene with its files read, or arrays in their place: ready to be drawn.
@@ -48,6 +55,8 @@ class Prepared:
     surface : geometry of the scene.
     ambient : the light of the photograph.
     lamps : time in seconds → the lamps of that moment; always the same names and kinds.
+    bodies : time in seconds → the luminous bodies of that moment; always the same names and
+        triangles.
     exposure : settings of the display.
     photometry : the word that every number carries.
     ignored : tables of the scene that this version does not draw.
@@ -57,9 +66,16 @@ class Prepared:
     surface: SurfaceModel
     ambient: Ambient
     lamps: Callable[[float], tuple[Lamp, ...]]
+    bodies: Callable[[float], tuple[Body, ...]] = nobody
     exposure: Exposure = field(default_factory=Exposure)
     photometry: Photometry = "absolute"
     ignored: tuple[str, ...] = ()
+
+    def casters(self, bodies: Sequence[Body]) -> Casters:
+        """What casts shadows while the luminous bodies are where they are."""
+        groups = [(REAL, self.surface.occluder.geometry), (OBJECTS, self.surface.casters)]
+        groups += [(body.name, body.geometry) for body in bodies if body.casts_shadow]
+        return Casters(tuple(groups))
 
 
 def prepare(scene: Scene, /) -> Prepared:

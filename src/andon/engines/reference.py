@@ -11,10 +11,11 @@ from andon.composite import reference as composite
 from andon.display import reference as display
 from andon.engines.prepared import Prepared
 from andon.lamps import Lamp
+from andon.lamps.bodies import Body
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
-from andon.rays import RayScene
 from andon.surface import reference as surface
 from andon.transport.direct import reference as direct
+from andon.transport.direct.casters import ShadowRays
 
 __all__ = ["ReferenceEngine"]
 
@@ -27,22 +28,29 @@ class ReferenceEngine:
 
     def __init__(self, prepared: Prepared) -> None:
         self.prepared = prepared
-        self._casters = RayScene(prepared.surface.shadow_casters)
         self._surfaces: dict[str, Surface] = {}
+        self._rays = ShadowRays(prepared.casters(()))
+        self._bodies: tuple[Body, ...] = ()
         self.maps_redrawn = 0
 
-    def see(self, view_name: str) -> Surface:
-        """The surface of a view; made once, since geometry and cameras stand still."""
+    def see(self, view_name: str, bodies: Sequence[Body]) -> Surface:
+        """The surface of a view; made once, but for bodies, since all else stands still."""
         if view_name not in self._surfaces:
             view = self.prepared.frames[view_name].view
             self._surfaces[view_name] = surface.see(self.prepared.surface, view)
-        return self._surfaces[view_name]
+        return surface.with_bodies(self._surfaces[view_name], bodies)
 
-    def illuminate(self, seen: Surface, lamps: Sequence[Lamp]) -> Illuminance:
+    def illuminate(
+        self, seen: Surface, lamps: Sequence[Lamp], bodies: Sequence[Body]
+    ) -> Illuminance:
         """Direct light of all lamps on the surface."""
+        if tuple(bodies) != self._bodies:  # dataclasses of arrays: the same objects, or others
+            self._rays = ShadowRays(self.prepared.casters(bodies))
+            self._bodies = tuple(bodies)
         bias = self.prepared.surface.bias
         bias_m: NDArray[np.float64] = np.where(seen.is_object, bias.object_m, bias.real_m)
-        lux = direct.illuminate(seen, lamps, self._casters, bias_m=bias_m)
+        names = [body.name for body in bodies]
+        lux = direct.illuminate(seen, lamps, self._rays, bias_m=bias_m, bodies=names)
         return Illuminance(lux, self.prepared.photometry)
 
     def compose(

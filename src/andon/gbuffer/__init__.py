@@ -8,10 +8,14 @@ cheaper than reading them and exact.
 from __future__ import annotations
 
 from andon.gbuffer.records import (
+    BODY_LIGHT,
+    BODY_SHIFT,
+    MAX_BODIES,
     NEAR_M,
     OBJECT,
     STRUCTS,
     VALID,
+    VERTEX,
     VIEW_RECORD,
     pack_surface,
     pack_view,
@@ -20,10 +24,14 @@ from andon.gbuffer.records import (
 )
 
 __all__ = [
+    "BODY_LIGHT",
+    "BODY_SHIFT",
+    "MAX_BODIES",
     "NEAR_M",
     "OBJECT",
     "STRUCTS",
     "VALID",
+    "VERTEX",
     "VIEW_RECORD",
     "pack_surface",
     "pack_view",

@@ -1,7 +1,7 @@
 // The packed surface, 16 bytes a pixel, one read:
 //
 //   x  depth in metres, f32 bits        z  √reflectance, 3 × unorm8 (√ spends the bits on darks)
-//   y  normal, octahedral 2 × snorm16   w  bit 0 valid, bit 1 virtual object, 8… material
+//   y  normal, octahedral 2 × snorm16   w  bit 0 valid, 1 virtual object, 8… material, 24… body
 
 //!import andon/gpu/octahedral.wgsl
 //!import andon/gbuffer/view.wgsl
@@ -9,6 +9,7 @@
 const VALID: u32 = 1u;
 const OBJECT: u32 = 2u;
 const MATERIAL_SHIFT: u32 = 8u;
+const BODY_SHIFT: u32 = 24u;
 
 struct SurfacePoint {
   position: vec3f,

@@ -12,10 +12,14 @@ from andon.quantities import Surface
 from andon.spaces import View
 
 __all__ = [
+    "BODY_LIGHT",
+    "BODY_SHIFT",
+    "MAX_BODIES",
     "NEAR_M",
     "OBJECT",
     "STRUCTS",
     "VALID",
+    "VERTEX",
     "VIEW_RECORD",
     "pack_surface",
     "pack_view",
@@ -53,7 +57,16 @@ VIEW_RECORD = HostStruct(
 STRUCTS = {VIEW_RECORD.name: VIEW_RECORD}
 
 # Flags in the fourth word of the G-buffer.
-VALID, OBJECT, MATERIAL_SHIFT = 1, 2, 8
+VALID, OBJECT, MATERIAL_SHIFT, BODY_SHIFT = 1, 2, 8, 24
+# Materials have 16 bits, bodies 8.
+MAX_BODIES = 255
+
+
+# Vertices of what is drawn, and the cd/m² of a luminous body's vertex from outside and inside.
+VERTEX = np.dtype(
+    [("position", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("material", "<u4")]
+)
+BODY_LIGHT = np.dtype([("outside", "<f4", 3), ("inside", "<f4", 3)])
 
 
 def pack_view(view: View, /) -> NDArray[Any]:
@@ -91,9 +104,11 @@ def pack_surface(surface: Surface, /) -> NDArray[np.uint32]:
     root = np.sqrt(np.clip(surface.reflectance, 0, 1))
     channels = np.rint(root * 255).astype(np.uint32)
     packed[..., 2] = channels @ np.array([1, 1 << 8, 1 << 16], np.uint32)
-    material = np.maximum(surface.material_id, 0).astype(np.uint32)
-    flags = surface.valid * VALID + surface.is_object * OBJECT
-    packed[..., 3] = np.where(surface.valid, flags + (material << MATERIAL_SHIFT), 0)
+    material = np.clip(surface.material_id, 0, 0xFFFF).astype(np.uint32)
+    flags = surface.valid * VALID + surface.is_object * OBJECT + (material << MATERIAL_SHIFT)
+    if surface.body_id is not None:
+        flags = flags + ((surface.body_id + 1).astype(np.uint32) << BODY_SHIFT)
+    packed[..., 3] = np.where(surface.valid, flags, 0)
     return packed
 
 
@@ -108,7 +123,7 @@ def _octahedral(normal: NDArray[np.float64]) -> NDArray[np.uint32]:
 
 
 def unpack_surface(packed: NDArray[np.uint32], view: View, /) -> dict[str, NDArray[Any]]:
-    """depth, normal, reflectance, valid, is_object and material_id from a packed G-buffer."""
+    """The fields of `Surface` that a packed G-buffer holds, by name."""
     halves = np.stack([packed[..., 1] & 0xFFFF, packed[..., 1] >> 16], axis=-1)
     signed: NDArray[np.int16] = halves.astype(np.uint16).view(np.int16)
     e: NDArray[np.float64] = np.maximum(np.asarray(signed, np.float64) / 32767.0, -1.0)
@@ -117,7 +132,8 @@ def unpack_surface(packed: NDArray[np.uint32], view: View, /) -> dict[str, NDArr
     normal = np.concatenate([xy, z], axis=-1)
     valid = (packed[..., 3] & VALID) > 0
     codes = np.stack([(packed[..., 2] >> shift) & 255 for shift in (0, 8, 16)], axis=-1)
-    material = (packed[..., 3] >> MATERIAL_SHIFT).astype(np.int32)
+    material = ((packed[..., 3] >> MATERIAL_SHIFT) & 0xFFFF).astype(np.int32)
+    body = ((packed[..., 3] >> BODY_SHIFT) & 0xFF).astype(np.int32) - 1
     return {
         "depth": np.where(valid, packed[..., 0].view(np.float32), np.nan),
         "normal": normal / np.linalg.norm(normal, axis=-1, keepdims=True),
@@ -125,4 +141,5 @@ def unpack_surface(packed: NDArray[np.uint32], view: View, /) -> dict[str, NDArr
         "valid": valid,
         "is_object": (packed[..., 3] & OBJECT) > 0,
         "material_id": np.where(valid, material, -1),
+        "body_id": body,
     }

@@ -29,12 +29,14 @@ class AreaLamp:
     luminance_cd_m2 : (3,) cd/m² per channel, the same in all directions.
     shadow : None for a lamp that casts none.
     drawn : the area is seen in the picture.
+    body : name of the `Body` whose light this is, which it does not fall on; "": none.
     """
 
     name: str
     luminance_cd_m2: Float
     shadow: Shadow | None = field(default=SOFT_SHADOW, kw_only=True)
     drawn: bool = field(default=True, kw_only=True)
+    body: str = field(default="", kw_only=True)
 
 
 @dataclass(frozen=True)

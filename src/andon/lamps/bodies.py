@@ -14,7 +14,7 @@ __all__ = ["Body"]
 Float = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Body:
     """A shell, or the emitting area of a lamp, at one moment.
 
@@ -25,6 +25,7 @@ class Body:
     outside_cd_m2, inside_cd_m2 : (n, 3) luminance of each vertex by the lamp's own light, seen
         from outside and from inside.
     reflectance : (3,) diffuse reflectance for the light of other lamps, both sides.
+    casts_shadow : hides other lamps.
     casts_shadow : hides other lamps.
     """
 

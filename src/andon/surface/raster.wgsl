@@ -1,6 +1,7 @@
 // Triangles into the G-buffer of a pinhole view.
 
 //!import andon/gbuffer/gbuffer.wgsl
+//!import andon/gbuffer/clip.wgsl
 //!import andon/surface/plain.wgsl
 
 @group(0) @binding(0) var<uniform> view: ViewRecord;
@@ -35,10 +36,7 @@ fn towards(normal: vec3f, sight: vec3f) -> u32 {
   @location(2) uv: vec2f,
   @location(3) material: u32,
 ) -> Corner {
-  let p = (view.camera_from_world * vec4f(position, 1.0)).xyz;
-  let image = (view.focal * p.xy + (view.centre - 0.5 * view.size) * p.z) * 2.0 / view.size;
-  // Reversed infinite depth: near/z, so that float32 keeps its relative precision far away.
-  let clip = vec4f(image.x, -image.y, view.near_m, p.z);
+  let clip = clip_position(position);
   let look = materials[material];
   let flags = draw_flags.x | (material << MATERIAL_SHIFT);
   let sight = position - view.position;

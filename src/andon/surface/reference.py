@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.lamps.bodies import Body
 from andon.quantities import Geometry, Material, Surface
-from andon.rays import RayScene, face_normals
+from andon.rays import Hits, RayScene, face_normals
 from andon.spaces import View, transform_points
 from andon.surface.model import SurfaceModel
 from andon.surface.textures import sample_bilinear
 
-__all__ = ["empty_surface", "from_depth", "from_normals", "nearest", "see", "trace"]
+__all__ = [
+    "empty_surface",
+    "from_depth",
+    "from_normals",
+    "nearest",
+    "see",
+    "trace",
+    "trace_body",
+    "with_bodies",
+]
 
 Float = NDArray[np.float64]
 
@@ -25,6 +36,28 @@ def see(model: SurfaceModel, view: View, /) -> Surface:
     if len(model.objects.triangles) == 0:
         return real
     return nearest(real, trace(model.objects, view, is_object=True))
+
+
+def with_bodies(surface: Surface, bodies: Sequence[Body], /) -> Surface:
+    """The surface with luminous bodies where they are nearer, each with its own light."""
+    for number, body in enumerate(bodies):
+        surface = nearest(surface, trace_body(body, number, surface.view))
+    return surface
+
+
+def trace_body(body: Body, number: int, view: View, /) -> Surface:
+    """One luminous body as `view` sees it, with the luminance of the side that is seen."""
+    geometry = body.geometry
+    surface, hits, rays = _traced(geometry, view)
+    mask = surface.valid
+    corners = geometry.triangles[hits.triangle]
+    outside = np.einsum("ni,nij->nj", hits.barycentric, body.outside_cd_m2[corners])
+    inside = np.einsum("ni,nij->nj", hits.barycentric, body.inside_cd_m2[corners])
+    facing = np.einsum("ij,ij->i", face_normals(geometry)[hits.triangle], rays) < 0
+    surface.emitted_cd_m2[mask] = np.where(facing[:, None], outside, inside)
+    surface.is_object[mask] = True
+    surface.reflectance[mask] = body.reflectance
+    return replace(surface, body_id=np.where(mask, np.int32(number), np.int32(-1)))
 
 
 def _see_real(model: SurfaceModel, view: View) -> Surface:
@@ -77,21 +110,29 @@ def from_normals(normal: Float, view: View, /) -> Surface:
 
 def trace(geometry: Geometry, view: View, /, *, is_object: bool) -> Surface:
     """Triangles as `view` sees them, one ray through each pixel's centre."""
+    surface, hits, _ = _traced(geometry, view)
+    surface.is_object[surface.valid] = is_object
+    _fill_material(surface, surface.valid, geometry, hits.triangle, hits.barycentric)
+    return surface
+
+
+def _traced(geometry: Geometry, view: View) -> tuple[Surface, Hits, Float]:
+    """Where the pixels' rays meet triangles: the surface, and hits and rays of its valid pixels."""
     origin, directions = view.rays_world()
     flat = directions.reshape(-1, 3)
     hits = RayScene(geometry).first_hits(np.broadcast_to(origin, flat.shape), flat)
     valid = hits.triangle >= 0
-    triangle, weights, rays = hits.triangle[valid], hits.barycentric[valid], flat[valid]
+    rays = flat[valid]
+    hits = Hits(hits.triangle[valid], hits.distance[valid], hits.barycentric[valid])
     surface = empty_surface(view)
     mask = valid.reshape(view.shape)
-    points = origin + rays * hits.distance[valid, None]
+    points = origin + rays * hits.distance[:, None]
+    normals = shading_normals(geometry, hits.triangle, hits.barycentric)
     surface.position[mask] = points
-    surface.normal[mask] = _towards(shading_normals(geometry, triangle, weights), rays)
+    surface.normal[mask] = _towards(normals, rays)
     surface.depth[mask] = _depth(points, view)
     surface.valid[mask] = True
-    surface.is_object[mask] = is_object
-    _fill_material(surface, mask, geometry, triangle, weights)
-    return surface
+    return surface, hits, rays
 
 
 def _depth(points: Float, view: View) -> Float:
@@ -154,6 +195,9 @@ def nearest(real: Surface, objects: Surface, /) -> Surface:
         mask = front.reshape(*front.shape, *[1] * (behind.ndim - 2))
         return np.where(mask, getattr(objects, name), behind)
 
+    bodies = [real.body_id, objects.body_id]
+    nobody = np.full(real.view.shape, -1, np.int32)
+    behind, before = (nobody if body is None else body for body in bodies)
     return Surface(
         position=choose("position"),
         normal=choose("normal"),
@@ -164,4 +208,5 @@ def nearest(real: Surface, objects: Surface, /) -> Surface:
         material_id=choose("material_id"),
         emitted_cd_m2=choose("emitted_cd_m2"),
         view=real.view,
+        body_id=None if all(body is None for body in bodies) else np.where(front, before, behind),
     )

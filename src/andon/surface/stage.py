@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.errors import InputError
 from andon.gbuffer import (
+    BODY_SHIFT,
+    MAX_BODIES,
     OBJECT,
     STRUCTS,
     VALID,
+    VERTEX,
     VIEW_RECORD,
     pack_surface,
     pack_view,
@@ -22,21 +27,20 @@ from andon.gpu.bindings import BindGroup, bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.passes import color_attachment, pipeline_layout, shader_module
 from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
-from andon.quantities import Geometry, Surface
-from andon.rays import face_normals
+from andon.lamps.bodies import Body
+from andon.quantities import Geometry, Material, Surface
 from andon.spaces import View
 from andon.surface import reference
+from andon.surface.body_mesh import BodyMesh
 from andon.surface.model import SurfaceModel
 from andon.surface.textures import TEXTURE_SIDE_PX
+from andon.surface.vertices import is_flat, vertex_arrays
 
 __all__ = ["GpuSurface", "SurfaceStage"]
 
 SHADER = "andon/surface/raster.wgsl"
 # Integer division costs a software rasteriser more than all the rest of the shader.
 PLAIN, TEXTURED = "andon/surface/plain.wgsl", "andon/surface/textured.wgsl"
-VERTEX = np.dtype(
-    [("position", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("material", "<u4")]
-)
 
 
 class GpuSurface:
@@ -47,6 +51,8 @@ class GpuSurface:
     texture : (H, W) rgba32uint, see gbuffer.wgsl.
     view_buffer : one `VIEW_RECORD`.
     emitted_cd_m2 : (materials, 3), what the materials of virtual objects emit.
+    bodies : luminous bodies as triangles with their light; none where they are traced.
+    body_light : their light as a picture, cd/m², where they are traced.
     model : what is seen; says which pixels have a material and a position of their own.
     """
 
@@ -59,6 +65,8 @@ class GpuSurface:
     ) -> None:
         self.view, self.model = view, model
         self.emitted_cd_m2 = emitted_cd_m2
+        self.bodies: tuple[BodyMesh, ...] = ()
+        self.body_light: Texture | None = None
         self.texture = make_texture(gpu, "rgba32uint", view.width, view.height, label="g-buffer")
         self.view_buffer = uniform_buffer(gpu, VIEW_RECORD.dtype.itemsize, "view")
         write_buffer(gpu, self.view_buffer, pack_view(view))
@@ -76,7 +84,8 @@ class GpuSurface:
             fields["material_id"] = np.where(is_object, fields["material_id"], -1)
         emitted = np.zeros_like(points.reflectance)
         # Numbers of materials are the objects' own; the real surface's emission is in the photo.
-        emitted[is_object] = self.emitted_cd_m2[fields["material_id"][is_object]]
+        own = is_object & (fields["body_id"] < 0)
+        emitted[own] = self.emitted_cd_m2[fields["material_id"][own]]
         fields["normal"] = points.normal
         return replace(points, **fields, emitted_cd_m2=emitted)
 
@@ -88,17 +97,24 @@ class SurfaceStage:
     curved, are traced by Embree when the stage is made and uploaded.
     """
 
-    def __init__(self, gpu: Gpu, model: SurfaceModel, view: View) -> None:
+    def __init__(
+        self, gpu: Gpu, model: SurfaceModel, view: View, bodies: Sequence[Body] = ()
+    ) -> None:
         self.gpu, self.model, self.view = gpu, model, view
+        _check_bodies(bodies)
+        self._has_bodies = len(bodies) > 0
         objects = model.objects
         emitted = np.array([m.emissive_cd_m2 for m in objects.materials], float).reshape(-1, 3)
         self.surface = GpuSurface(gpu, view, emitted, model)
-        on_host = view.projection != "pinhole"
+        self._on_host = view.projection != "pinhole"
         has_picture = view.name in model.depth or model.is_distant_only
         self._draws: list[_Draw] = []
+        self._bodies: list[BodyMesh] = []
         self._background: Texture | None = None
-        if on_host or (has_picture and len(objects.triangles) == 0):
-            self.surface.texture.write(pack_surface(reference.see(model, view)))
+        self._still: Surface | None = None
+        if self._on_host or (has_picture and len(objects.triangles) == 0 and not bodies):
+            self._still = reference.see(model, view)
+            self.surface.texture.write(pack_surface(self._still))
             return
         if has_picture:
             real = reference.see(SurfaceModel(depth=model.depth, normals=model.normals), view)
@@ -109,6 +125,17 @@ class SurfaceStage:
             self._draws.append(_Draw(self, model.real, VALID))
         if len(objects.triangles):
             self._draws.append(_Draw(self, objects, VALID | OBJECT))
+        for number, body in enumerate(bodies):
+            mesh = BodyMesh(gpu, body, number)
+            flags = VALID | OBJECT | ((number + 1) << BODY_SHIFT)
+            self._draws.append(_Draw(self, body.geometry, flags, mesh, body.reflectance))
+            self._bodies.append(mesh)
+        self.surface.bodies = tuple(self._bodies)
+
+    @property
+    def has_bodies(self) -> bool:
+        """Luminous bodies are drawn."""
+        return self._has_bodies
 
     @property
     def is_static(self) -> bool:
@@ -144,6 +171,19 @@ class SurfaceStage:
         if self._background is not None:
             self._fill = self._pipeline(layout, module, "fullscreen", "background", [], "always")
             self._fill_group = layout
+
+    def _see_on_host(self, still: Surface, bodies: Sequence[Body]) -> None:
+        """Curved projections: bodies are traced, and their light is a picture."""
+        seen = reference.with_bodies(still, bodies)
+        self.surface.texture.write(pack_surface(seen))
+        if self.surface.body_light is None:
+            size = (self.view.width, self.view.height)
+            self.surface.body_light = make_texture(self.gpu, "rgba32float", *size)
+        light = np.zeros((*self.view.shape, 4))
+        own = seen.body_id
+        if own is not None:
+            light[own >= 0, :3] = seen.emitted_cd_m2[own >= 0]
+        self.surface.body_light.write(light)
 
     def bind(self, flags: Any, materials: Any, textures: Texture, background: Texture) -> BindGroup:
         """Group 0 of raster.wgsl."""
@@ -185,10 +225,17 @@ class SurfaceStage:
             },
         )
 
-    def encode(self, encoder: Any) -> GpuSurface:
-        """Records the drawing of the G-buffer; returns where it will be."""
-        if not self._draws:
+    def encode(self, encoder: Any, bodies: Sequence[Body] = ()) -> GpuSurface:
+        """Records the drawing of the G-buffer; returns where it will be.
+
+        `bodies` are those of the start, where they are now.
+        """
+        if self._still is not None:
+            if bodies:
+                self._see_on_host(self._still, bodies)
             return self.surface
+        for mesh, body in zip(self._bodies, bodies, strict=True):
+            mesh.move(body)
         render = encoder.begin_render_pass(
             label="surface",
             color_attachments=[color_attachment(self.surface.texture.view)],
@@ -210,19 +257,36 @@ class SurfaceStage:
         return self.surface
 
 
+def _check_bodies(bodies: Sequence[Body]) -> None:
+    if len(bodies) > MAX_BODIES:
+        raise InputError(f"{len(bodies)} luminous bodies, at most {MAX_BODIES}", field="lamp")
+
+
 class _Draw:
     """Buffers of one geometry."""
 
-    def __init__(self, stage: SurfaceStage, geometry: Geometry, flags: int) -> None:
+    def __init__(
+        self,
+        stage: SurfaceStage,
+        geometry: Geometry,
+        flags: int,
+        body: BodyMesh | None = None,
+        reflectance: tuple[float, float, float] | None = None,
+    ) -> None:
         import wgpu
 
         gpu = stage.gpu
-        vertices, indices = vertex_arrays(geometry)
-        self.count = indices.size
         self.entry_point = "flat_surface" if is_flat(geometry) else "surface"
         device, usage = gpu.device, wgpu.BufferUsage
-        self.vertices = device.create_buffer_with_data(data=vertices, usage=usage.VERTEX)
-        self.indices = device.create_buffer_with_data(data=indices, usage=usage.INDEX)
+        if body is None:
+            vertices, indices = vertex_arrays(geometry)
+            self.count = indices.size
+            self.vertices = device.create_buffer_with_data(data=vertices, usage=usage.VERTEX)
+            self.indices = device.create_buffer_with_data(data=indices, usage=usage.INDEX)
+        else:
+            self.count, self.vertices, self.indices = body.count, body.vertices, body.indices
+        if reflectance is not None:
+            geometry = replace(geometry, materials=(Material(reflectance=reflectance),))
         flag_buffer = uniform_buffer(gpu, 16, "draw flags")
         write_buffer(gpu, flag_buffer, np.array([flags, 0, 0, 0], np.uint32))
         table, textures = _material_table(gpu, geometry)
@@ -241,36 +305,6 @@ def _storage_usage() -> int:
     import wgpu
 
     return wgpu.BufferUsage.STORAGE
-
-
-def is_flat(geometry: Geometry, /) -> bool:
-    """Every triangle has one normal and one colour."""
-    if geometry.uvs is not None and any(m.texture is not None for m in geometry.materials):
-        return False
-    if geometry.normals is None:
-        return True
-    corners = geometry.normals[geometry.triangles]
-    return bool((corners == corners[:, :1]).all())
-
-
-def vertex_arrays(geometry: Geometry, /) -> tuple[NDArray[Any], NDArray[np.uint32]]:
-    """Vertices (n,) of `VERTEX` and indices (3m,); flat shading gets its own three corners."""
-    triangles = geometry.triangles
-    ids = geometry.material_ids
-    shared = geometry.normals is not None and (ids is None or not ids.any())
-    corner = np.arange(len(geometry.positions)) if shared else triangles.ravel()
-    vertices = np.zeros(len(corner), VERTEX)
-    vertices["position"] = geometry.positions[corner]
-    if geometry.normals is not None:
-        vertices["normal"] = geometry.normals[corner]
-    else:
-        vertices["normal"] = np.repeat(face_normals(geometry), 3, axis=0)
-    if geometry.uvs is not None:
-        vertices["uv"] = geometry.uvs[corner]
-    if ids is not None and not shared:
-        vertices["material"] = np.repeat(ids, 3)
-    indices = triangles.ravel() if shared else np.arange(len(corner))
-    return vertices, indices.astype(np.uint32)
 
 
 def _material_table(gpu: Gpu, geometry: Geometry) -> tuple[NDArray[np.float32], Texture]:

@@ -24,16 +24,19 @@ struct Receiver {
   away: f32,
 };
 
-// Is the receiver's plane, where it passes the centre of the texel, no farther than what the map
+// Is the receiver's plane, where it passes the centre `u` of a texel, no farther than what the map
 // holds there?
-fn paraboloid_texel_lit(point: Receiver, texel: vec2i) -> bool {
-  let front = point.reach.z >= 0.0;
-  let u = (vec2f(texel) + 0.5) * (2.0 / MAP_SIZE) - 1.0;
-  let centre = paraboloid_direction(u, select(-1.0, 1.0, front));
-  let layer = max(point.layer, 0) + select(1, 0, front);
-  let stored = textureLoad(paraboloids, texel, layer, 0).x;
+fn plane_is_nearer(point: Receiver, u: vec2f, side: f32, stored: f32) -> bool {
+  let centre = paraboloid_direction(u, side);
   // distance of the plane along `centre` = away·(1+|u|²)/(normal·centre), both negative.
   return point.away * (1.0 + dot(u, u)) >= stored * (1.0 + SAME_DEPTH) * dot(point.normal, centre);
+}
+
+fn paraboloid_texel_lit(point: Receiver, texel: vec2i) -> bool {
+  let side = select(-1.0, 1.0, point.reach.z >= 0.0);
+  let layer = max(point.layer, 0) + select(0, 1, side < 0.0);
+  let stored = textureLoad(paraboloids, texel, layer, 0).x;
+  return plane_is_nearer(point, (vec2f(texel) + 0.5) * (2.0 / MAP_SIZE) - 1.0, side, stored);
 }
 
 fn point_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
@@ -109,5 +112,8 @@ fn hemisphere_illuminance(lamp: i32, normal: vec3f) -> vec3f {
   return mix(lamps[lamp].right, lamps[lamp].light, sky);
 }
 
+//!import andon/transport/direct/shadows/bilinear.wgsl
 //!import andon/transport/direct/shadows/filter_none.wgsl
+//!import andon/transport/direct/soft.wgsl
+//!import andon/transport/direct/area_lamps.wgsl
 //!import andon/transport/direct/sum.wgsl

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,19 +12,22 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.gpu.layout import HostStruct
 from andon.lamps import DirectionalLamp, HemisphereLamp, Lamp, PointLamp, SkyLamp, SpotLamp
+from andon.lamps.areas import AreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.lamps.distributions import spot_coefficients
 
 __all__ = [
     "DIRECT_RECORD",
+    "EDGE_RECORD",
     "FACE_RECORD",
     "LAMP_RECORD",
     "MAX_LAMPS",
+    "SAMPLE_RECORD",
     "STRUCTS",
     "WIDE_SPOT_RADIANS",
     "PlanarFrame",
+    "form_of",
     "is_exact",
     "pack_lamps",
-    "sorted_lamps",
 ]
 
 # 64 records of 112 bytes fit WebGPU's smallest uniform buffer (65536 bytes) many times over; the
@@ -34,16 +37,17 @@ MAX_LAMPS = 64
 LAMP_RECORD = HostStruct(
     "LampRecord",
     (
-        # point, spot: place in metres; directional: centre of the shadow map
+        # place in metres; directional: centre of the shadow map; tube: one end
         ("position", "vec3f"),
-        ("shadow_layer", "i32"),  # −1: none
-        # cd, or lux of directional and hemisphere (sky) lamps
+        ("radius_m", "f32"),  # of area lamps
+        # cd, lux of directional and hemisphere (sky) lamps, cd/m² of area lamps
         ("light", "vec3f"),
         ("cone_scale", "f32"),
-        # spot, directional: where the light travels; hemisphere: up
+        # spot, directional: where the light travels; hemisphere: up; disk: normal
         ("axis", "vec3f"),
         ("cone_offset", "f32"),
-        # planar shadow maps: axes of the map; hemisphere: `right` is the ground's lux
+        # planar shadow maps: axes of the map; hemisphere: `right` is the ground's lux; tube: the
+        # other end
         ("right", "vec3f"),
         ("half_width", "f32"),  # tangent of the half-angle, or metres
         ("down", "vec3f"),
@@ -54,12 +58,6 @@ LAMP_RECORD = HostStruct(
 DIRECT_RECORD = HostStruct(
     "DirectRecord",
     (
-        # lamps in each group, in the order in which they stand
-        ("points", "u32"),
-        ("wide_spots", "u32"),
-        ("spots", "u32"),
-        ("directionals", "u32"),
-        ("hemispheres", "u32"),
         # lift along the normal before a shadow is looked up
         ("bias_real_m", "f32"),
         ("bias_object_m", "f32"),
@@ -69,7 +67,35 @@ DIRECT_RECORD = HostStruct(
 
 FACE_RECORD = HostStruct("FaceRecord", (("position", "vec3f"), ("near_m", "f32")))
 
-STRUCTS = {struct.name: struct for struct in (LAMP_RECORD, DIRECT_RECORD, FACE_RECORD)}
+# A point of an area lamp from which its shadow is looked at.
+SAMPLE_RECORD = HostStruct(
+    "SampleRecord",
+    (
+        ("point", "vec3f"),
+        ("sides", "f32"),  # 0 no face, 1 one side, 2 both
+        ("normal", "vec3f"),
+        ("light", "vec3f"),
+    ),
+)
+
+# An edge of a polygon or mesh lamp: what lies on either side of it emits if the receiver is in
+# front of that side's plane.
+EDGE_RECORD = HostStruct(
+    "EdgeRecord",
+    (
+        ("start", "vec3f"),
+        ("end", "vec3f"),
+        ("left_plane", "vec4f"),
+        ("right_plane", "vec4f"),
+        ("left_light", "vec3f"),
+        ("right_light", "vec3f"),
+    ),
+)
+
+STRUCTS = {
+    struct.name: struct
+    for struct in (LAMP_RECORD, DIRECT_RECORD, FACE_RECORD, SAMPLE_RECORD, EDGE_RECORD)
+}
 
 # A plane map of half-angle α is tan α wide: at 60° its middle has a quarter of the texels per
 # radian that its rim has. Wider cones look into a paraboloid.
@@ -101,10 +127,31 @@ def is_exact(lamp: PointLamp, /) -> bool:
     return lamp.shadow is not None and lamp.shadow.filter == "exact"
 
 
-def sorted_lamps(lamps: Sequence[Lamp], /) -> list[list[Lamp]]:
-    """The lamps in five groups: point, wide spot, spot, directional, hemisphere (and sky).
+def form_of(lamp: Lamp, /) -> str:
+    """Which function of the shaders has this lamp's light: ``<form>_illuminance``."""
+    match lamp:
+        case SpotLamp():
+            wide = lamp.outer_radians > WIDE_SPOT_RADIANS or is_exact(lamp)
+            return "wide_spot" if wide else "spot"
+        case PointLamp():
+            return "point"
+        case DirectionalLamp():
+            return "directional"
+        case SkyLamp() | HemisphereLamp():
+            return "hemisphere"
+        case SphereLamp():
+            return "sphere"
+        case DiskLamp():
+            return "disk_both_sides" if lamp.two_sided else "disk"
+        case TubeLamp():
+            return "tube"
+        case PolygonLamp() | MeshLamp():
+            return "edges"
 
-    On a software rasteriser a branch costs both its sides, so the shader has one loop a group.
+
+def pack_lamps(lamps: Sequence[Lamp], frames: Mapping[str, PlanarFrame], /) -> NDArray[Any]:
+    """`LAMP_RECORD`s in the order of `lamps`; `frames` are keyed by lamp name.
+
     Raises `InputError` for more than `MAX_LAMPS`.
     """
     if len(lamps) > MAX_LAMPS:
@@ -113,61 +160,15 @@ def sorted_lamps(lamps: Sequence[Lamp], /) -> list[list[Lamp]]:
             field="lamp",
             remedy="leave lamps out, or bake some",
         )
-    groups: list[list[Lamp]] = [[], [], [], [], []]
-    for lamp in lamps:
-        groups[_group(lamp)].append(lamp)
-    return groups
-
-
-def _group(lamp: Lamp) -> int:
-    match lamp:
-        case SpotLamp():
-            return 1 if lamp.outer_radians > WIDE_SPOT_RADIANS or is_exact(lamp) else 2
-        case PointLamp():
-            return 0
-        case DirectionalLamp():
-            return 3
-        case SkyLamp() | HemisphereLamp():
-            return 4
-
-
-def pack_lamps(
-    groups: Sequence[Sequence[Lamp]],
-    layers: dict[str, int],
-    frames: dict[str, PlanarFrame],
-    /,
-) -> NDArray[Any]:
-    """`LAMP_RECORD`s in the order of `groups`; `layers` and `frames` are keyed by lamp name."""
-    records = [
-        _pack(lamp, layers.get(lamp.name, -1), frames.get(lamp.name))
-        for group in groups
-        for lamp in group
-    ]
     # Not np.concatenate: it drops the padding between fields.
-    table = np.zeros(len(records), LAMP_RECORD.dtype)
-    for row, record in enumerate(records):
-        table[row] = record[0]
+    table = np.zeros(len(lamps), LAMP_RECORD.dtype)
+    for row, lamp in enumerate(lamps):
+        table[row] = _pack(lamp, frames.get(lamp.name))[0]
     return table
 
 
-def _pack(lamp: Lamp, layer: int, frame: PlanarFrame | None) -> NDArray[Any]:
-    values: dict[str, Any] = {"shadow_layer": layer}
-    match lamp:
-        case PointLamp():
-            values |= {"position": lamp.position_m, "light": lamp.intensity_cd}
-            if isinstance(lamp, SpotLamp):
-                scale, offset = spot_coefficients(lamp.inner_radians, lamp.outer_radians)
-                values |= {"axis": lamp.direction, "cone_scale": scale, "cone_offset": offset}
-        case DirectionalLamp():
-            values |= {"light": lamp.illuminance_lux, "axis": lamp.direction}
-        case SkyLamp():
-            values |= {"light": lamp.illuminance_lux, "axis": lamp.up}
-        case HemisphereLamp():
-            values |= {
-                "light": lamp.sky_illuminance_lux,
-                "axis": lamp.up,
-                "right": lamp.ground_illuminance_lux,
-            }
+def _pack(lamp: Lamp, frame: PlanarFrame | None) -> NDArray[Any]:
+    values = _light(lamp)
     if frame is not None:
         values |= {
             "right": frame.right,
@@ -178,3 +179,41 @@ def _pack(lamp: Lamp, layer: int, frame: PlanarFrame | None) -> NDArray[Any]:
         if isinstance(lamp, DirectionalLamp):
             values["position"] = frame.centre
     return LAMP_RECORD.pack(**values)
+
+
+def _light(lamp: Lamp) -> dict[str, Any]:
+    match lamp:
+        case SpotLamp():
+            scale, offset = spot_coefficients(lamp.inner_radians, lamp.outer_radians)
+            cone = {"axis": lamp.direction, "cone_scale": scale, "cone_offset": offset}
+            return {"position": lamp.position_m, "light": lamp.intensity_cd, **cone}
+        case PointLamp():
+            return {"position": lamp.position_m, "light": lamp.intensity_cd}
+        case DirectionalLamp():
+            return {"light": lamp.illuminance_lux, "axis": lamp.direction}
+        case SkyLamp():
+            return {"light": lamp.illuminance_lux, "axis": lamp.up}
+        case HemisphereLamp():
+            ground = lamp.ground_illuminance_lux
+            return {"light": lamp.sky_illuminance_lux, "axis": lamp.up, "right": ground}
+        case _:
+            return _area(lamp)
+
+
+def _area(lamp: AreaLamp) -> dict[str, Any]:
+    light = {"light": lamp.luminance_cd_m2}
+    match lamp:
+        case SphereLamp():
+            return light | {"position": lamp.position_m, "radius_m": lamp.radius_m}
+        case DiskLamp():
+            place = {"position": lamp.position_m, "radius_m": lamp.radius_m}
+            return light | place | {"axis": lamp.direction}
+        case TubeLamp():
+            start, end = lamp.ends_m
+            return light | {"position": start, "right": end, "radius_m": lamp.radius_m}
+        case PolygonLamp():
+            return light | {"position": lamp.vertices_m.mean(axis=0)}
+        case MeshLamp():
+            return light | {"position": lamp.positions_m.mean(axis=0)}
+        case _:
+            raise TypeError(f"{type(lamp).__name__} has no area")

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps import DirectionalLamp, HemisphereLamp, Lamp, PointLamp, SkyLamp, SpotLamp
+from andon.lamps.areas import AreaLamp
 from andon.lamps.distributions import spot_attenuation
 from andon.quantities import Surface
-from andon.rays import RayScene
+from andon.transport.direct.casters import ShadowRays
+from andon.transport.direct.soft import sample_points, sample_weights
 
-__all__ = ["illuminance", "illuminate", "visibility"]
+__all__ = ["illuminance", "illuminate", "visibility", "visible_share"]
 
 Float = NDArray[np.float64]
 
@@ -49,37 +51,81 @@ def _from_a_place(lamp: PointLamp, position: Float, normal: Float) -> Float:
     return factor[..., None] * lamp.intensity_cd
 
 
-def visibility(lamp: Lamp, points: Float, casters: RayScene, /) -> NDArray[np.bool_]:
+def visibility(lamp: Lamp, points: Float, rays: ShadowRays, /) -> NDArray[np.bool_]:
     """(n,) bool: the lamp is seen from `points` (n, 3), already lifted off their surface.
 
-    Sky and hemisphere lamps are ambient: they cast no shadow.
+    Sky and hemisphere lamps are ambient: they cast no shadow. Not for area lamps, which can be
+    seen in part: `visible_share`.
     """
     if isinstance(lamp, SkyLamp | HemisphereLamp) or lamp.shadow is None:
         return np.ones(len(points), bool)
+    casters = rays.through(lamp.shadow.through)
     if isinstance(lamp, DirectionalLamp):
         return casters.sees_infinity(points, -lamp.direction)
+    assert isinstance(lamp, PointLamp)
     return casters.is_visible(points, lamp.position_m)
 
 
+def visible_share(
+    lamp: AreaLamp, position: Float, normal: Float, lifted: Float, rays: ShadowRays, /
+) -> Float:
+    """(n, 3) in [0, 1]: the share of an area lamp's light that reaches `position` (n, 3).
+
+    `lifted` (n, 3) are the same points off their surface, from which rays start.
+    """
+    if lamp.shadow is None:
+        return np.ones_like(position)
+    casters = rays.through(lamp.shadow.through)
+    samples = sample_points(lamp, lamp.shadow.samples)
+    weights = sample_weights(samples, position, normal)
+    seen = np.stack([casters.is_visible(lifted, point) for point in samples.points])
+    return np.einsum("nm,nmc->mc", seen, weights) / weights.sum(axis=0)
+
+
 def illuminate(
-    surface: Surface, lamps: Sequence[Lamp], casters: RayScene, /, *, bias_m: NDArray[np.float64]
+    surface: Surface,
+    lamps: Sequence[Lamp],
+    rays: ShadowRays,
+    /,
+    *,
+    bias_m: NDArray[np.float64],
+    bodies: Sequence[str] = (),
 ) -> Float:
     """Illuminance (H, W, 3) in lux that `lamps` add to `surface`; 0 in holes.
 
     Parameters
     ----------
-    casters : what casts shadows.
+    rays : against what casts shadows.
     bias_m : (H, W) lift along the normal before a shadow ray starts, metres.
+    bodies : names of the luminous bodies that `surface.body_id` counts.
     """
     total = np.zeros((*surface.view.shape, 3))
     mask = surface.valid
     position, normal = surface.position[mask], surface.normal[mask]
     lifted = position + normal * bias_m[mask][:, None]
+    body = None if surface.body_id is None else surface.body_id[mask]
     added = np.zeros_like(position)
     for lamp in lamps:
         light = illuminance(lamp, position, normal)
-        lit = light.max(axis=-1) > 0
-        light[lit] *= visibility(lamp, lifted[lit], casters)[:, None]
+        if isinstance(lamp, AreaLamp) and lamp.body in bodies and body is not None:
+            light[body == list(bodies).index(lamp.body)] = 0
+        lit = np.abs(light).max(axis=-1) > 0
+        light[lit] *= _share(lamp, position[lit], normal[lit], lifted[lit], rays)
         added += light
     total[mask] = added
     return total
+
+
+def _share(lamp: Lamp, position: Float, normal: Float, lifted: Float, rays: ShadowRays) -> Float:
+    if not isinstance(lamp, AreaLamp):
+        return visibility(lamp, lifted, rays)[:, None].astype(float)
+    shares = [
+        visible_share(lamp, position[part], normal[part], lifted[part], rays)
+        for part in _slices(len(position))
+    ]
+    return np.concatenate(shares) if shares else np.ones((0, 3))
+
+
+def _slices(count: int) -> list[slice]:
+    # Samples × receivers × 3 float64 stay below some 100 MB.
+    return [slice(start, start + (1 << 16)) for start in range(0, count, 1 << 16)]

@@ -2,53 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
-
-import numpy as np
 
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.textures import uniform_buffer, write_buffer
 from andon.lamps import Lamp
-from andon.quantities import Geometry
+from andon.transport.direct.area_buffers import AreaBuffers
+from andon.transport.direct.casters import Casters
 from andon.transport.direct.records import (
     DIRECT_RECORD,
     LAMP_RECORD,
     MAX_LAMPS,
     STRUCTS,
     pack_lamps,
-    sorted_lamps,
 )
+from andon.transport.direct.shadows.caster_buffers import CasterBuffers
 from andon.transport.direct.shadows.maps import NEAR_M, ShadowMaps
+from andon.transport.direct.shadows.soft_maps import SoftMaps
+from andon.transport.direct.sum import sum_of_lamps
 
-__all__ = ["STRUCTS", "DirectStage"]
+__all__ = ["FILTER", "STRUCTS", "SUM", "DirectStage"]
 
 
 FILTER = "andon/transport/direct/shadows/filter_{}.wgsl"
 SUM = "andon/transport/direct/sum.wgsl"
-GROUPS = ("point", "wide_spot", "spot", "directional", "hemisphere")
-
-
-def sum_of_lamps(
-    groups: Sequence[Sequence[Lamp]], layers: Mapping[str, int], size: int, triangles: int, /
-) -> str:
-    """WGSL of `illuminance` for just these lamps: no loops, no branches, constants as constants.
-
-    `layers` are those of the shadow maps by lamp name, `size` their texels along a side,
-    `triangles` how many cast shadows.
-    """
-    lines = [f"const MAP_SIZE: f32 = {float(size)};", f"const TRIANGLES: i32 = {triangles};"]
-    lines.append("fn illuminance(position: vec3f, normal: vec3f, bias: f32) -> vec3f {")
-    lines.append("  var total = vec3f(0.0);")
-    lamp = 0
-    for name, group in zip(GROUPS, groups, strict=True):
-        place = "normal" if name == "hemisphere" else "position, normal, bias"
-        for member in group:
-            layer = "" if name == "hemisphere" else f"{layers.get(member.name, -1)}, "
-            lines.append(f"  total += {name}_illuminance({lamp}, {layer}{place});")
-            lamp += 1
-    return "\n".join([*lines, "  return total;", "}"])
 
 
 class DirectStage:
@@ -66,20 +45,30 @@ class DirectStage:
     def __init__(
         self,
         gpu: Gpu,
-        casters: Geometry,
+        casters: Casters,
         lamps: Sequence[Lamp],
+        bodies: Sequence[str] = (),
         *,
         bias_real_m: float,
         bias_object_m: float,
     ) -> None:
         self.gpu = gpu
         self.bias = {"bias_real_m": bias_real_m, "bias_object_m": bias_object_m}
-        self.maps = ShadowMaps(gpu, casters, lamps)
-        groups = sorted_lamps(lamps)
-        self.variants = {
-            SUM: sum_of_lamps(groups, self.maps.layers, self.maps.size, len(self.maps.triangles)),
-            FILTER.format("none"): FILTER.format(self.maps.filter),
-        }
+        self.casters = CasterBuffers(gpu, casters)
+        self.maps = ShadowMaps(gpu, self.casters, lamps)
+        self.soft = SoftMaps(gpu, self.casters, lamps, NEAR_M)
+        self.areas = AreaBuffers(gpu, lamps)
+        code = sum_of_lamps(
+            lamps,
+            bodies,
+            layers=self.maps.layers,
+            samples=self.soft.firsts,
+            edges=self.areas.edges,
+            map_size=self.maps.size,
+            soft_map_size=self.soft.size,
+            triangles=len(self.casters.triangles),
+        )
+        self.variants = {SUM: code, FILTER.format("none"): FILTER.format(self.maps.filter)}
         self._lamps = uniform_buffer(gpu, LAMP_RECORD.dtype.itemsize * MAX_LAMPS, "lamps")
         self._settings = uniform_buffer(gpu, DIRECT_RECORD.dtype.itemsize, "direct")
         self.group = bind_group(
@@ -90,20 +79,20 @@ class DirectStage:
                 2: ("float array", self.maps.paraboloids.view),
                 3: ("depth array", self.maps.planes.view),
                 4: ("storage", self.maps.occluders),
+                5: ("float array", self.soft.paraboloids.view),
+                6: ("storage", self.areas.samples_buffer),
+                7: ("storage", self.areas.edges_buffer),
             },
             "direct",
         )
 
-    def encode(self, encoder: Any, lamps: Sequence[Lamp]) -> int:
+    def encode(self, encoder: Any, lamps: Sequence[Lamp], casters: Casters) -> int:
         """Brings maps and records to `lamps` (same names as at the start); returns maps redrawn."""
-        moved = self.maps.update(encoder, lamps)
-        groups = sorted_lamps(lamps)
-        records = pack_lamps(groups, self.maps.layers, self.maps.frames)
-        if len(records):
-            write_buffer(self.gpu, self._lamps, records)
-        counts = {
-            f"{name}s": np.uint32(len(group)) for name, group in zip(GROUPS, groups, strict=True)
-        }
-        settings = DIRECT_RECORD.pack(**counts, **self.bias, near_m=NEAR_M)
+        self.casters.move(casters)
+        redrawn = self.soft.update(lamps) + self.maps.update(encoder, lamps)
+        self.areas.update(lamps)
+        if lamps:
+            write_buffer(self.gpu, self._lamps, pack_lamps(lamps, self.maps.frames))
+        settings = DIRECT_RECORD.pack(**self.bias, near_m=NEAR_M)
         write_buffer(self.gpu, self._settings, settings)
-        return moved
+        return redrawn

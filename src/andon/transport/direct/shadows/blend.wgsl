@@ -4,16 +4,9 @@ fn texel_corner(place: vec2f) -> vec2i {
   return clamp(vec2i(floor(place - 0.5)), vec2i(0), vec2i(i32(MAP_SIZE) - 2));
 }
 
-fn blend(lit: vec4<bool>, place: vec2f, corner: vec2i) -> f32 {
-  let f = clamp(place - 0.5 - vec2f(corner), vec2f(0.0), vec2f(1.0));
-  let share = select(vec4f(0.0), vec4f(1.0), lit);
-  let rows = mix(share.xz, share.yw, f.x);
-  return mix(rows.x, rows.y, f.y);
-}
-
 fn spot_share(point: Receiver, place: vec2f) -> f32 {
   let corner = texel_corner(place);
-  return blend(vec4<bool>(
+  return bilinear(vec4<bool>(
     spot_texel_lit(point, corner),
     spot_texel_lit(point, corner + vec2i(1, 0)),
     spot_texel_lit(point, corner + vec2i(0, 1)),
@@ -23,7 +16,7 @@ fn spot_share(point: Receiver, place: vec2f) -> f32 {
 
 fn directional_share(point: Receiver, place: vec2f) -> f32 {
   let corner = texel_corner(place);
-  return blend(vec4<bool>(
+  return bilinear(vec4<bool>(
     directional_texel_lit(point, corner),
     directional_texel_lit(point, corner + vec2i(1, 0)),
     directional_texel_lit(point, corner + vec2i(0, 1)),

@@ -14,9 +14,10 @@ from andon.gpu.device import Gpu
 from andon.gpu.passes import FullscreenPass, color_attachment, pipeline_layout, shader_module
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
 from andon.transport.direct.records import FACE_RECORD, STRUCTS
+from andon.transport.direct.shadows.caster_buffers import CasterBuffers
 from andon.transport.direct.shadows.culling import face_triangles
 
-__all__ = ["FaceMaps", "TrianglePlanes"]
+__all__ = ["FaceMaps"]
 
 FOLDER = "andon/transport/direct/shadows"
 DISTANCE, TRIANGLE = f"{FOLDER}/resample_distance.wgsl", f"{FOLDER}/resample_triangle.wgsl"
@@ -38,10 +39,11 @@ class FaceMaps:
 
     Parameters
     ----------
-    positions, triangles : (n, 3) float32 metres and (m, 3) int32, what casts shadows.
+    casters : what casts shadows.
     discs : views of the layers to fill, two for each lamp.
     map_size : texels along a side of a disc.
     exact : discs hold which triangle is seen, and `occluders` describes it.
+    slots : lamps that can be recorded before the commands are submitted; None: all.
 
     Attributes
     ----------
@@ -53,25 +55,21 @@ class FaceMaps:
     def __init__(
         self,
         gpu: Gpu,
-        positions: NDArray[np.float32],
-        triangles: NDArray[np.int32],
+        casters: CasterBuffers,
         discs: Sequence[Any],
         map_size: int,
         near_m: float,
         *,
         exact: bool = False,
+        slots: int | None = None,
     ) -> None:
         self.gpu, self.discs, self.near_m, self.exact = gpu, discs, near_m, exact
-        self.positions, self.triangles = positions, triangles
-        self._planes = TrianglePlanes(positions, triangles)
+        self.casters = casters
         self.face = map_size // 2
         size = (3 * self.face, 2 * self.face)
         self.depth = make_texture(gpu, "depth32float", *size, label="faces: depth")
         self.seen = make_texture(gpu, "rgba32float", *size, label="faces: planes")
-        self._vertices = self._storage(max(12, positions.nbytes))
-        if len(positions):
-            write_buffer(gpu, self._vertices, positions)
-        self._slots = [self._slot() for _ in range(len(discs) // 2)]
+        self._slots = [self._slot() for _ in range(slots or len(discs) // 2)]
         self._drawing = self._pipeline(self._slots[0].drawing)
         self._resampling = FullscreenPass(
             gpu,
@@ -82,7 +80,7 @@ class FaceMaps:
             structs=STRUCTS,
             variants={DISTANCE: TRIANGLE} if exact else {},
         )
-        rows = 4 * len(triangles) * len(self._slots) if exact else 1
+        rows = 4 * len(casters.triangles) * len(self._slots) if exact else 1
         self.occluders = self._storage(16 * max(1, rows))
 
     def _storage(self, size_bytes: int) -> Any:
@@ -93,12 +91,12 @@ class FaceMaps:
 
     def _slot(self) -> _Slot:
         # Worst case: every face sees every triangle.
-        most = max(1, 6 * len(self.triangles))
+        most = max(1, 6 * len(self.casters.triangles))
         lamp = uniform_buffer(self.gpu, FACE_RECORD.dtype.itemsize, "shadow lamp")
         corners, planes = self._storage(12 * most), self._storage(16 * most)
         drawing = {
             0: ("uniform", lamp),
-            1: ("storage", self._vertices),
+            1: ("storage", self.casters.vertices),
             2: ("storage", corners),
             3: ("storage", planes),
         }
@@ -130,10 +128,22 @@ class FaceMaps:
             },
         )
 
-    def encode(self, encoder: Any, position: NDArray[np.float64], layer: int) -> None:
-        """Records the map of a lamp at `position` (3,) into the discs `layer` and `layer` + 1."""
-        slot = self._slots[layer // 2]
-        faces = face_triangles(self.positions, self.triangles, position.astype(np.float32))
+    def encode(
+        self,
+        encoder: Any,
+        position: NDArray[np.float64],
+        layer: int,
+        hiding: NDArray[np.bool_] | None = None,
+    ) -> None:
+        """Records the map of a lamp at `position` (3,) into the discs `layer` and `layer` + 1.
+
+        `hiding` (m,) says which triangles hide this lamp; None: all.
+        """
+        slot = self._slots[layer // 2 % len(self._slots)]
+        casters = self.casters
+        faces = face_triangles(casters.positions, casters.triangles, position.astype(np.float32))
+        if hiding is not None:
+            faces = [face[hiding[face]] for face in faces]
         self._upload(slot, position, np.concatenate(faces))
         render = encoder.begin_render_pass(
             label="shadow faces",
@@ -162,47 +172,10 @@ class FaceMaps:
         record = FACE_RECORD.pack(position=position, near_m=self.near_m)
         write_buffer(self.gpu, slot.lamp, record)
         if len(seen):
-            write_buffer(self.gpu, slot.corners, self.triangles[seen])
-            planes = self._planes.seen_from(position)
+            write_buffer(self.gpu, slot.corners, self.casters.triangles[seen])
+            planes = self.casters.planes.seen_from(position)
             write_buffer(self.gpu, slot.planes, planes[seen])
             if self.exact:
-                rows = np.stack([planes, *self._planes.edges_from(position)], axis=1)
+                rows = np.stack([planes, *self.casters.planes.edges_from(position)], axis=1)
                 first = self._slots.index(slot) * rows.nbytes
                 self.gpu.device.queue.write_buffer(self.occluders, first, rows.view(np.uint8))
-
-
-class TrianglePlanes:
-    """Planes of triangles as any lamp has them; normals are made once."""
-
-    def __init__(self, positions: NDArray[np.float32], triangles: NDArray[np.int32]) -> None:
-        self._corners: NDArray[np.float64] = positions.astype(np.float64)[triangles]
-        a, b, c = (self._corners[:, i] for i in range(3))
-        self._normal: NDArray[np.float64] = np.cross(b - a, c - a)
-        self._offset: NDArray[np.float64] = np.einsum("ij,ij->i", self._normal, a)
-        self._tiny = 1e-12 * np.linalg.norm(self._normal, axis=1) + 1e-300
-
-    def seen_from(self, lamp: NDArray[np.float64], /) -> NDArray[np.float32]:
-        """(m, 4): q in xyz with q·(P − lamp) = 1 for the points P of each triangle's plane; its
-        number plus one in w.
-
-        q = n/(n·(a − lamp)); along a unit direction d the plane is 1/(q·d) away. Large where the
-        lamp lies in the plane, which then is seen edge-on.
-        """
-        distance: NDArray[np.float64] = self._offset - self._normal @ lamp
-        distance = np.where(np.abs(distance) < self._tiny, self._tiny, distance)
-        planes = np.zeros((len(distance), 4), np.float32)
-        planes[:, :3] = np.clip(self._normal / distance[:, None], -1e30, 1e30)
-        planes[:, 3] = np.arange(1, len(planes) + 1)
-        return planes
-
-    def edges_from(self, lamp: NDArray[np.float64], /) -> list[NDArray[np.float32]]:
-        """Three (m, 4): unit normals, inwards, of the planes through the lamp and each edge."""
-        corners = self._corners - lamp
-        side = np.sign(np.asarray(self._offset - self._normal @ lamp, np.float64))
-        edges: list[NDArray[np.float32]] = []
-        for first, second in ((0, 1), (1, 2), (2, 0)):
-            normal = np.cross(corners[:, first], corners[:, second]) * side[:, None]
-            length = np.linalg.norm(normal, axis=1, keepdims=True)
-            unit = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
-            edges.append(np.pad(unit, ((0, 0), (0, 1))).astype(np.float32))
-        return edges

@@ -4,7 +4,7 @@
 
 fn paraboloid_share(point: Receiver, place: vec2f) -> f32 {
   let corner = texel_corner(place);
-  return blend(vec4<bool>(
+  return bilinear(vec4<bool>(
     paraboloid_texel_lit(point, corner),
     paraboloid_texel_lit(point, corner + vec2i(1, 0)),
     paraboloid_texel_lit(point, corner + vec2i(0, 1)),

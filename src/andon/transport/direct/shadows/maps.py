@@ -13,8 +13,9 @@ from andon.gpu.device import Gpu
 from andon.gpu.passes import pipeline_layout, shader_module
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
 from andon.lamps import DirectionalLamp, Lamp, PointLamp, Shadow, SpotLamp
-from andon.quantities import Geometry
+from andon.spaces import perpendicular
 from andon.transport.direct.records import STRUCTS, WIDE_SPOT_RADIANS, PlanarFrame, is_exact
+from andon.transport.direct.shadows.caster_buffers import CasterBuffers
 from andon.transport.direct.shadows.face_maps import FaceMaps
 
 __all__ = ["NEAR_M", "ShadowMaps"]
@@ -24,8 +25,6 @@ FILTERS = ("none", "linear", "exact")
 FOLDER = "andon/transport/direct/shadows"
 # Nothing nearer than this to a lamp casts a shadow (the bulb itself, its socket): metres.
 NEAR_M = 0.01
-# A depth map without casters would have an empty bounding sphere.
-EMPTY_RADIUS_M = 1.0
 
 
 def shadow_of(lamp: Lamp, /) -> Shadow | None:
@@ -53,8 +52,8 @@ class ShadowMaps:
     frames : lamp name → `PlanarFrame`, for lamps with a plane.
     """
 
-    def __init__(self, gpu: Gpu, casters: Geometry, lamps: Sequence[Lamp]) -> None:
-        self.gpu = gpu
+    def __init__(self, gpu: Gpu, buffers: CasterBuffers, lamps: Sequence[Lamp]) -> None:
+        self.gpu, self.buffers = gpu, buffers
         shadowed = [lamp for lamp in lamps if shadow_of(lamp) is not None]
         wishes = [wish for lamp in lamps if (wish := shadow_of(lamp)) is not None]
         self.size = max((wish.map_size for wish in wishes), default=2)
@@ -66,7 +65,7 @@ class ShadowMaps:
         self.layers = {name: 2 * i for i, name in enumerate(round_lamps)}
         self.layers |= {name: i for i, name in enumerate(flat_lamps)}
         self.frames: dict[str, PlanarFrame] = {}
-        self._drawn: dict[str, bytes] = {}
+        self._drawn: dict[str, tuple[Any, ...]] = {}
         side = self.size if round_lamps else 2
         self.paraboloids = make_texture(
             gpu, "r32float", side, side, layers=max(2, 2 * len(round_lamps)), label="paraboloids"
@@ -75,55 +74,31 @@ class ShadowMaps:
         self.planes = make_texture(
             gpu, "depth32float", side, side, layers=max(1, len(flat_lamps)), label="planes"
         )
-        self._load(casters)
         self._faces: FaceMaps | None = None
         if round_lamps:
             layers = range(self.paraboloids.layers or 0)
             views = [self.paraboloids.layer_view(layer) for layer in layers]
-            self._faces = FaceMaps(
-                gpu,
-                self.positions,
-                self.triangles,
-                views,
-                self.size,
-                NEAR_M,
-                exact=self.filter == "exact",
-            )
-        self.occluders = self._faces.occluders if self._faces else self.vertices
+            exact = self.filter == "exact"
+            self._faces = FaceMaps(gpu, buffers, views, self.size, NEAR_M, exact=exact)
+        self.occluders = self._faces.occluders if self._faces else buffers.vertices
         self._planar = _Planar(self, len(flat_lamps)) if flat_lamps else None
 
-    def _load(self, casters: Geometry) -> None:
-        import wgpu
-
-        self.positions = np.ascontiguousarray(casters.positions, np.float32)
-        self.triangles = np.ascontiguousarray(casters.triangles, np.int32)
-        centre = np.zeros(3)
-        self.radius_m = EMPTY_RADIUS_M
-        if len(self.positions):
-            centre = 0.5 * (casters.positions.min(axis=0) + casters.positions.max(axis=0))
-            self.radius_m = float(np.linalg.norm(casters.positions - centre, axis=1).max()) + 1e-3
-        self.centre = centre
-        device, usage = self.gpu.device, wgpu.BufferUsage
-        vertices = self.positions if len(self.positions) else np.zeros((1, 3), np.float32)
-        indices = self.triangles if len(self.triangles) else np.zeros((1, 3), np.int32)
-        self.vertices = device.create_buffer_with_data(
-            data=vertices, usage=usage.VERTEX | usage.STORAGE
-        )
-        self.indices = device.create_buffer_with_data(data=indices, usage=usage.INDEX)
-
     def update(self, encoder: Any, lamps: Sequence[Lamp]) -> int:
-        """Records the maps of lamps that moved since they were drawn; returns how many."""
+        """Records the maps that are not true any more: the lamp moved, or a body that hides it.
+
+        Returns how many.
+        """
         moved = 0
         for lamp in lamps:
             if lamp.name not in self.layers:
                 continue
             if not is_paraboloid(lamp):
                 self.frames[lamp.name] = self._frame(lamp)
-            pose = _pose(lamp)
-            if self._drawn.get(lamp.name) == pose:
+            state = (_pose(lamp), self.buffers.casters.version(_through(lamp)))
+            if self._drawn.get(lamp.name) == state:
                 continue
             self._draw(encoder, lamp)
-            self._drawn[lamp.name] = pose
+            self._drawn[lamp.name] = state
             moved += 1
         return moved
 
@@ -132,10 +107,12 @@ class ShadowMaps:
         if is_paraboloid(lamp):
             assert self._faces is not None
             assert isinstance(lamp, PointLamp)
-            self._faces.encode(encoder, lamp.position_m, layer)
+            hiding = self.buffers.casters.hiding(_through(lamp))
+            self._faces.encode(encoder, lamp.position_m, layer, hiding)
         else:
             assert self._planar is not None
-            self._planar.encode(encoder, self.frames[lamp.name], layer)
+            hiding = self.buffers.casters.hiding(_through(lamp))
+            self._planar.encode(encoder, self.frames[lamp.name], layer, hiding)
 
     def _frame(self, lamp: Lamp) -> PlanarFrame:
         if isinstance(lamp, SpotLamp):
@@ -146,22 +123,18 @@ class ShadowMaps:
         assert isinstance(lamp, DirectionalLamp)
         right, down = perpendicular(lamp.direction)
         margin = 1.05
-        return PlanarFrame(
-            self.centre, right, down, lamp.direction, self.radius_m, 2 * margin * self.radius_m
-        )
+        centre, radius = self.buffers.bounds
+        return PlanarFrame(centre, right, down, lamp.direction, radius, 2 * margin * radius)
+
+
+def _through(lamp: Lamp) -> frozenset[str]:
+    shadow = shadow_of(lamp)
+    return frozenset() if shadow is None else shadow.through
 
 
 def _pose(lamp: Lamp) -> bytes:
     parts = [getattr(lamp, key, None) for key in ("position_m", "direction", "outer_radians")]
     return b"".join(np.asarray(part, np.float64).tobytes() for part in parts if part is not None)
-
-
-def perpendicular(axis: NDArray[np.float64], /) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Two unit vectors that form a right-handed frame (right, down, axis) with `axis` (3,)."""
-    helper = np.eye(3)[int(np.argmin(np.abs(axis)))]
-    right = np.cross(helper, axis)
-    right /= np.linalg.norm(right)
-    return right, np.cross(axis, right)
 
 
 def _vertex_state(module: Any, entry: str) -> dict[str, Any]:
@@ -204,7 +177,9 @@ class _Planar:
         )
         self.views = [maps.planes.layer_view(layer) for layer in range(count)]
 
-    def encode(self, encoder: Any, frame: PlanarFrame, layer: int) -> None:
+    def encode(
+        self, encoder: Any, frame: PlanarFrame, layer: int, hiding: NDArray[np.bool_] | None
+    ) -> None:
         matrix = clip_from_world(frame).T.astype(np.float32)
         write_buffer(self.maps.gpu, self.buffers[layer], matrix)
         render = encoder.begin_render_pass(
@@ -214,11 +189,18 @@ class _Planar:
         )
         render.set_pipeline(self.pipeline)
         render.set_bind_group(0, self.groups[layer].group)
-        render.set_vertex_buffer(0, self.maps.vertices)
-        render.set_index_buffer(self.maps.indices, "uint32")
-        if self.maps.triangles.size:
-            render.draw_indexed(self.maps.triangles.size)
+        render.set_vertex_buffer(0, self.maps.buffers.vertices)
+        render.set_index_buffer(self.maps.buffers.indices, "uint32")
+        for first, end in _runs(hiding, len(self.maps.buffers.triangles)):
+            render.draw_indexed(3 * (end - first), 1, 3 * first)
         render.end()
+
+
+def _runs(hiding: NDArray[np.bool_] | None, count: int) -> list[tuple[int, int]]:
+    """(first, end) of the runs of triangles that are drawn; groups of casters are runs."""
+    drawn = np.ones(count, bool) if hiding is None else hiding
+    steps = np.flatnonzero(np.diff(np.pad(drawn.astype(np.int8), 1)))
+    return [(int(first), int(end)) for first, end in steps.reshape(-1, 2)]
 
 
 def clip_from_world(frame: PlanarFrame, /) -> NDArray[np.float64]:

@@ -8,8 +8,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps import DirectionalLamp, HemisphereLamp, Lamp, PointLamp, SkyLamp, SpotLamp
-from andon.lamps.areas import AreaLamp
+from andon.lamps.areas import (
+    AreaLamp,
+    DiskLamp,
+    MeshLamp,
+    PolygonLamp,
+    SphereLamp,
+    TubeLamp,
+)
 from andon.lamps.distributions import spot_attenuation
+from andon.lamps.edges import textured_edges
+from andon.lamps.form_factors import (
+    disk_factor,
+    edges_factor,
+    mesh_factor,
+    polygon_factor,
+    sphere_factor,
+    tube_factor,
+)
 from andon.quantities import Surface
 from andon.transport.direct.casters import ShadowRays
 from andon.transport.direct.soft import sample_points, sample_weights
@@ -19,12 +35,15 @@ __all__ = ["illuminance", "illuminate", "visibility", "visible_share"]
 Float = NDArray[np.float64]
 
 
-def illuminance(lamp: Lamp, position: Float, normal: Float, /) -> Float:
+def illuminance(lamp: Lamp | AreaLamp, position: Float, normal: Float, /) -> Float:
     """Unshadowed illuminance (..., 3) in lux at `position` (..., 3) with unit `normal` (..., 3).
 
-    Source: the relighting paper, equation (1), with I(ω) for spots.
+    Source: the relighting paper, equation (1), with I(ω) for spots; of area lamps
+    `andon.lamps.form_factors`.
     """
     match lamp:
+        case AreaLamp():
+            return _from_an_area(lamp, position, normal)
         case PointLamp():  # and SpotLamp, which is one with a cone
             return _from_a_place(lamp, position, normal)
         case DirectionalLamp():
@@ -49,6 +68,46 @@ def _from_a_place(lamp: PointLamp, position: Float, normal: Float) -> Float:
             along, inner_radians=lamp.inner_radians, outer_radians=lamp.outer_radians
         )
     return factor[..., None] * lamp.intensity_cd
+
+
+def _from_an_area(lamp: AreaLamp, position: Float, normal: Float) -> Float:
+    place = position, normal
+    match lamp:
+        case SphereLamp():
+            factor = sphere_factor(*place, lamp.position_m, lamp.radius_m)
+        case TubeLamp():
+            factor = tube_factor(*place, lamp.ends_m, lamp.radius_m)
+        case DiskLamp():
+            disk = lamp.position_m, lamp.direction, lamp.radius_m
+            factor = disk_factor(*place, *disk)
+            if lamp.two_sided:
+                factor = factor + disk_factor(*place, disk[0], -lamp.direction, lamp.radius_m)
+        case PolygonLamp():
+            return _from_a_polygon(lamp, position, normal)
+        case MeshLamp():
+            facets = lamp.facet_luminance_cd_m2
+            if facets is not None:
+                return mesh_factor(*place, lamp.positions_m, lamp.triangles, facets)
+            factor = mesh_factor(*place, lamp.positions_m, lamp.triangles)
+        case _:
+            raise TypeError(f"no illuminance of {type(lamp).__name__}")
+    return factor[..., None] * lamp.luminance_cd_m2
+
+
+def _from_a_polygon(lamp: PolygonLamp, position: Float, normal: Float) -> Float:
+    """Front and, of a two-sided lamp, back, whose picture is the front's seen through."""
+    front = lamp.vertices_m
+    sides = [front, front[::-1]] if lamp.two_sided else [front]
+    if lamp.texture is None:
+        factor = sum(polygon_factor(position, normal, side)[..., None] for side in sides)
+        return factor * lamp.luminance_cd_m2
+    a, b, weight = textured_edges(front, lamp.texture)
+    runs = (a, b), (b, a)
+    factor = sum(
+        edges_factor(position, normal, side, *run, weight)
+        for side, run in zip(sides, runs, strict=False)
+    )
+    return factor * lamp.luminance_cd_m2
 
 
 def visibility(lamp: Lamp, points: Float, rays: ShadowRays, /) -> NDArray[np.bool_]:

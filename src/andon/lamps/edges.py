@@ -1,0 +1,180 @@
+"""Area lamps as lists of edges: what a shader sums.
+
+A facet's factor is the sum over its edges (`andon.lamps.form_factors`), and an edge that two
+facets share runs through them in opposite senses. So a whole lamp is one list of edges, each with
+the facet on its left and the one on its right as seen from outside:
+
+    E = Σ ( L_left·front_left − L_right·front_right ) · edge_factor
+
+where front is 1 for a receiver before that facet's plane and 0 behind it. Inner edges between
+facets of one plane and one luminance cancel for every receiver and are left out: a box has 12
+edges, not 36.
+
+A luminous picture is a division into cells of one luminance each, whose inner edges carry the
+*difference* of two cells. Its error is that of a picture made coarse: flux is kept, and what is
+lost falls with distance as the cube of (cell/distance); see `textured_edges`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.errors import InputError
+from andon.lamps.areas import MeshLamp, PolygonLamp
+
+__all__ = ["TEXTURE_CELLS", "FacetEdges", "mesh_edges", "polygon_edges", "textured_edges"]
+
+Float = NDArray[np.float64]
+
+# Cells along each side of a luminous picture.
+TEXTURE_CELLS = 8
+
+# Planes whose unit normals and offsets (in sizes of the lamp) agree to this are one: float32 files.
+SAME_PLANE = 1e-6
+
+
+@dataclass(frozen=True)
+class FacetEdges:
+    """Edges of facets that emit to their outside.
+
+    Attributes
+    ----------
+    a, b : (k, 3) metres, world: the facet on the left runs from a to b.
+    left_plane, right_plane : (k, 4): outward unit normal n and offset w of the facet; a receiver
+        at x is in front where n·x + w > 0. Of a facet that is not there: all 0, never in front.
+    left_luminance_cd_m2, right_luminance_cd_m2 : (k, 3); 0 of a facet that is not there.
+    """
+
+    a: Float
+    b: Float
+    left_plane: Float
+    right_plane: Float
+    left_luminance_cd_m2: Float
+    right_luminance_cd_m2: Float
+
+
+def polygon_edges(lamp: PolygonLamp, /) -> FacetEdges:
+    """The outline (k edges) of a polygon without its texture; two-sided: a facet on either side."""
+    a = np.asarray(lamp.vertices_m, np.float64)
+    arms = a - a.mean(axis=0)
+    normal = np.cross(arms, np.roll(arms, -1, axis=0)).sum(axis=0)
+    normal /= np.linalg.norm(normal)
+    plane = np.tile([*normal, -normal @ a.mean(axis=0)], (len(a), 1))
+    luminance = np.tile(np.asarray(lamp.luminance_cd_m2, np.float64), (len(a), 1))
+    back = float(lamp.two_sided)
+    return FacetEdges(a, np.roll(a, -1, axis=0), plane, -back * plane, luminance, back * luminance)
+
+
+def mesh_edges(lamp: MeshLamp, /) -> FacetEdges:
+    """All edges of a mesh that do not cancel, shared ones once.
+
+    Vertices at one place are one. Triangles without area are left out; edges with one facet, and
+    with more than two, are kept as often as it takes.
+    """
+    places, same = np.unique(np.asarray(lamp.positions_m, np.float64), axis=0, return_inverse=True)
+    triangles = same.reshape(-1)[np.asarray(lamp.triangles)]
+    corners = places[triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    size = np.linalg.norm(normal, axis=1)
+    kept = size > 0
+    normal = normal[kept] / size[kept, None]
+    plane = np.c_[normal, -np.sum(normal * corners[kept, 0], axis=1)]
+    facets = lamp.facet_luminance_cd_m2
+    uniform = np.asarray(lamp.luminance_cd_m2, np.float64)
+    luminance = (
+        np.tile(uniform, (len(kept), 1)) if facets is None else np.asarray(facets, np.float64)
+    )
+    return _paired(places, triangles[kept], plane, luminance[kept])
+
+
+def _paired(
+    places: Float, triangles: NDArray[np.intp], plane: Float, luminance: Float
+) -> FacetEdges:
+    """Every edge with the facets on its two sides; facet −1 is none."""
+    start, end = triangles.reshape(-1), np.roll(triangles, -1, axis=1).reshape(-1)
+    facet = np.repeat(np.arange(len(triangles)), 3)
+    forward = start < end
+    key = np.minimum(start, end) * len(places) + np.maximum(start, end)
+    turn = _turn(key, forward)
+    # The n-th facet on the left of an edge and the n-th on its right are neighbours.
+    slots, at = np.unique(np.c_[key, turn], axis=0, return_inverse=True)
+    sides = np.full((len(slots), 2), -1)
+    sides[at.reshape(-1), np.where(forward, 0, 1)] = facet
+    none = np.zeros((1, 4)), np.zeros((1, 3))
+    planes, light = (
+        np.concatenate([plane, none[0]])[sides],
+        np.concatenate([luminance, none[1]])[sides],
+    )
+    extent = float(np.abs(places - places.mean(axis=0)).max(initial=0.0))
+    shift = np.abs(planes[:, 0] - planes[:, 1]) / [1, 1, 1, max(extent, 1e-300)]
+    seen = (shift.max(axis=1) > SAME_PLANE) | (light[:, 0] != light[:, 1]).any(axis=1)
+    low, high = np.divmod(slots[seen, 0], len(places))
+    return FacetEdges(
+        places[low], places[high],
+        planes[seen, 0], planes[seen, 1], light[seen, 0], light[seen, 1],
+    )  # fmt: skip
+
+
+def _turn(key: NDArray[np.intp], forward: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """How many facets came before on the same side of the same edge."""
+    both = 2 * key + forward
+    order = np.argsort(both, kind="stable")
+    ranked = both[order]
+    first = np.r_[True, ranked[1:] != ranked[:-1]]
+    begin = np.maximum.accumulate(np.where(first, np.arange(len(ranked)), 0))
+    turn = np.empty(len(both), np.intp)
+    turn[order] = np.arange(len(ranked)) - begin
+    return turn
+
+
+def textured_edges(
+    vertices: Float, texture: Float, cells: int = TEXTURE_CELLS, /
+) -> tuple[Float, Float, Float]:
+    """Edges of a luminous rectangle: a (e, 3), b (e, 3) in metres and weight (e, 3).
+
+    Parameters
+    ----------
+    vertices : (4, 3) of the rectangle, counter-clockwise as seen from the front.
+    texture : (h, w, 3) factors on the luminance; row 0 runs from vertex 3 to vertex 2.
+    cells : along each side, ≥ 1; each has the mean of the texels in it, shared texels by area.
+
+    The weights are factors like the texture; edges between equal cells are left out, so that a
+    uniform texture leaves the outline. Error against the bilinear picture, for a random picture
+    of 16 × 16 texels on a square of side s in 8 × 8 cells, relative, median (worst): see the test.
+
+    Raises
+    ------
+    InputError : `vertices` is no rectangle's, or `texture` no picture.
+    """
+    corners, picture = np.asarray(vertices, np.float64), np.asarray(texture, np.float64)
+    if corners.shape != (4, 3):
+        raise InputError(f"a textured lamp has 4 vertices, not {len(corners)}", field="texture")
+    if picture.ndim != 3 or picture.shape[2] != 3 or not picture.size:
+        raise InputError(f"a texture is (h, w, 3), not {picture.shape}", field="texture")
+    mean = np.einsum("ih,jw,hwc->ijc", _overlaps(cells, picture.shape[0]),
+                     _overlaps(cells, picture.shape[1]), picture)  # fmt: skip
+    share = np.linspace(0, 1, cells + 1)
+    right, down = corners[1] - corners[0], corners[0] - corners[3]
+    grid = corners[3] + share[:, None, None] * down + share[:, None] * right
+    above = np.pad(mean, ((1, 1), (0, 0), (0, 0)))
+    beside = np.pad(mean, ((0, 0), (1, 1), (0, 0)))
+    # Lines run to the right, with the upper cell on their left, and up, with the left one.
+    a = np.concatenate([grid[:, :-1].reshape(-1, 3), grid[1:].reshape(-1, 3)])
+    b = np.concatenate([grid[:, 1:].reshape(-1, 3), grid[:-1].reshape(-1, 3)])
+    weight = np.concatenate(
+        [(above[:-1] - above[1:]).reshape(-1, 3), (beside[:, :-1] - beside[:, 1:]).reshape(-1, 3)]
+    )
+    seen = np.abs(weight).max(axis=1) > 1e-12 * np.abs(mean).max()
+    return a[seen], b[seen], weight[seen]
+
+
+def _overlaps(cells: int, texels: int) -> Float:
+    """(cells, texels): the share of each cell that each texel covers."""
+    edge = np.linspace(0, texels, cells + 1)
+    low, high = edge[:-1, None], edge[1:, None]
+    texel = np.arange(texels)
+    covered = np.clip(np.minimum(high, texel + 1) - np.maximum(low, texel), 0, None)
+    return covered * cells / texels

@@ -20,11 +20,13 @@ Sources: KHR_lights_punctual (Khronos); ISO/CIE 11664-1; ITU-R BT.709-6.
 
 from __future__ import annotations
 
+from andon.lamps.areas import AreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
+from andon.lamps.bodies import Body
 from andon.lamps.colour import rgb_factors
+from andon.lamps.kinds import AnyAreaLamp, Lamp
 from andon.lamps.model import (
     DirectionalLamp,
     HemisphereLamp,
-    Lamp,
     PointLamp,
     Shadow,
     SkyLamp,

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 __all__ = [
     "DirectionalLamp",
     "HemisphereLamp",
-    "Lamp",
     "PointLamp",
     "Shadow",
     "SkyLamp",
@@ -130,5 +129,3 @@ class HemisphereLamp:
     sky_illuminance_lux: Float
     ground_illuminance_lux: Float
 
-
-Lamp = PointLamp | SpotLamp | DirectionalLamp | SkyLamp | HemisphereLamp

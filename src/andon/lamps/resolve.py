@@ -15,10 +15,10 @@ from andon.lamps.distributions import (
     intensity_cd_from_flux,
     spot_solid_angle_sr,
 )
+from andon.lamps.kinds import Lamp
 from andon.lamps.model import (
     DirectionalLamp,
     HemisphereLamp,
-    Lamp,
     PointLamp,
     Shadow,
     SkyLamp,

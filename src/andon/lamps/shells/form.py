@@ -1,0 +1,176 @@
+"""The form of a shell, made ready: facets that emit, lids, and the triangles that are drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.errors import InputError
+from andon.lamps.coarse import coarse_corners
+from andon.lamps.shells.beams import solid_angles
+from andon.lamps.shells.layer import FIELD, Layer, clean_layer, rims
+from andon.lamps.shells.lids import fan, flat_lid, vector_area
+from andon.lamps.shells.model import Shell
+from andon.lamps.solids import icosphere, quarters
+from andon.quantities import Geometry
+
+__all__ = ["Form", "form_of"]
+
+Float = NDArray[np.float64]
+
+# Triangles that emit: every one is a loop iteration of a shader, for every pixel.
+MAX_FACETS = 96
+# Rims beyond this are a perforated sheet, not openings that deserve an area lamp each.
+MAX_LIDS = 8
+# A rim that spans less than this share of the shell is a seam that was not closed, not an opening.
+SEAM = 1e-4
+# How often the shell may cover a direction twice before it is no single layer any more.
+MAX_OVERLAP = 0.05
+# Triangles of the drawn shell are cut until none is seen from the lamp under more than this.
+DRAWN_STERADIAN, MAX_DRAWN = 0.01, 16_384
+SPHERE_CUTS_DRAWN, SPHERE_CUTS_LIGHT = 4, 1
+
+
+@dataclass(frozen=True, eq=False)
+class Form:
+    """A shell's triangles relative to its lamp, outside counter-clockwise.
+
+    Attributes
+    ----------
+    drawn : geometry of the body, with normals where the mesh has them.
+    corners : (m, 3, 3) all triangles as given.
+    facets : (n, 3, 3) the triangles that stand for them as emitters.
+    covers : (4, 3, 3)… triangles (k, 3, 3) that close it; none if `has_gaps` or nothing is open.
+    lids : flat polygons (k, 3), one for each opening, counter-clockwise from outside.
+    has_gaps : several parts, or too many openings: what is open is what the parts leave free.
+    """
+
+    drawn: Geometry
+    corners: Float
+    facets: Float
+    covers: Float
+    lids: tuple[Float, ...] = ()
+    has_gaps: bool = False
+
+    @property
+    def is_open(self) -> bool:
+        """Some light gets out without meeting the shell."""
+        return bool(self.lids) or self.has_gaps
+
+
+@lru_cache(maxsize=32)
+def form_of(shell: Shell, /) -> Form:
+    """The form of `shell`; kept for as long as shells are few.
+
+    Raises `InputError` for a mesh that is no shell: see `clean_layer`; the lamp is outside; it
+    covers itself.
+    """
+    if shell.mesh is None:
+        return _sphere(shell.radius_m or 0.0)
+    layer = clean_layer(shell.mesh.positions, shell.mesh.triangles)
+    loops = _openings(layer)
+    if int(layer.part.max()) == 0 and len(loops) <= MAX_LIDS:
+        layer, loops = _around_lamp(layer, loops)
+        lids = tuple(flat_lid(loop) for loop in loops)
+        gaps = False
+    else:
+        layer, gaps = _outwards(layer)
+        loops, lids = [], ()
+    covers = [fan(loop) for loop in loops]
+    return Form(
+        _drawn(shell.mesh, layer),
+        layer.corners,
+        coarse_corners(layer.positions, layer.triangles, MAX_FACETS),
+        np.concatenate(covers) if covers else np.empty((0, 3, 3)),
+        lids,
+        gaps,
+    )
+
+
+def _sphere(radius_m: float) -> Form:
+    fine, coarse = icosphere(SPHERE_CUTS_DRAWN), icosphere(SPHERE_CUTS_LIGHT)
+    corners = coarse.positions[coarse.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    flat = np.linalg.norm(across, axis=1).sum() / 2
+    facets = corners * radius_m * np.sqrt(4 * np.pi / flat)  # the area of the ball itself
+    drawn = Geometry(fine.positions * radius_m, fine.triangles, fine.normals)
+    whole = drawn.positions[drawn.triangles]
+    return Form(drawn, whole, facets, np.empty((0, 3, 3)))
+
+
+def _openings(layer: Layer) -> list[Float]:
+    size = float(np.ptp(layer.positions, axis=0).max())
+    loops = rims(layer)
+    return [loop for loop in loops if np.linalg.norm(vector_area(loop)) > (SEAM * size) ** 2]
+
+
+def _around_lamp(layer: Layer, loops: list[Float]) -> tuple[Layer, list[Float]]:
+    """One part, turned outwards. Closed by its lids it goes round the lamp once, or not at all."""
+    whole = solid_angles(layer.corners).sum() + sum(solid_angles(fan(lp)).sum() for lp in loops)
+    turns = whole / (4 * np.pi)
+    if abs(abs(turns) - 1) > 0.25:
+        _refuse_outside()
+    if turns < 0:
+        layer = layer.turned(np.ones(len(layer.triangles), np.bool_))
+        loops = [loop[::-1] for loop in loops]
+    _check_overlap(layer, float(solid_angles(layer.corners).sum()))
+    return layer, loops
+
+
+def _outwards(layer: Layer) -> tuple[Layer, bool]:
+    """Several parts, each turned so that the lamp sees its inside; and whether gaps remain."""
+    seen = np.bincount(layer.part, solid_angles(layer.corners))
+    layer = layer.turned((seen < 0)[layer.part])
+    covered = float(np.abs(seen).sum())
+    if covered < 1e-6:
+        _refuse_outside()
+    _check_overlap(layer, min(covered, 4 * np.pi))
+    return layer, covered < 4 * np.pi * (1 - SEAM)
+
+
+def _check_overlap(layer: Layer, covered: float) -> None:
+    hit = float(np.maximum(solid_angles(layer.corners), 0).sum())
+    if hit > covered + 4 * np.pi * MAX_OVERLAP:
+        raise InputError(
+            f"covers itself as seen from its lamp: {hit / (4 * np.pi):.0%} of all directions "
+            f"instead of {covered / (4 * np.pi):.0%}",
+            field=FIELD,
+            remedy="a shell is one layer of triangles around the lamp, without thickness",
+        )
+
+
+def _refuse_outside() -> None:
+    raise InputError(
+        "the lamp is outside its shell, or on it",
+        field=FIELD,
+        remedy="the mesh's origin is where the lamp is: move the mesh around it; a shell is one "
+        "layer, without thickness",
+    )
+
+
+def _drawn(mesh: Geometry, layer: Layer) -> Geometry:
+    """The mesh as given, turned outwards, with corners of its own where it is flat-shaded."""
+    triangles = mesh.triangles[layer.source].astype(np.int64)
+    corners = np.where(layer.flipped[:, None], triangles[:, ::-1], triangles)
+    at = mesh.positions[corners]
+    normals = None if mesh.normals is None else mesh.normals[corners].copy()
+    if normals is not None:
+        # A file's normals may look in while its triangles look out: each joins its triangle.
+        across = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
+        normals *= np.where(np.einsum("tki,ti->tk", normals, across) < 0, -1, 1)[..., None]
+    while 4 * len(at) <= MAX_DRAWN and np.abs(solid_angles(at)).max() > DRAWN_STERADIAN:
+        at = quarters(at)
+        normals = None if normals is None else quarters(normals)
+    return Geometry(
+        at.reshape(-1, 3),
+        np.arange(3 * len(at), dtype=np.int32).reshape(-1, 3),
+        None if normals is None else _unit(normals.reshape(-1, 3)),
+    )
+
+
+def _unit(vectors: Float) -> Float:
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / np.maximum(length, np.finfo(float).tiny)

@@ -15,8 +15,7 @@ from PIL import Image
 
 from andon.files import write_camera, write_exr
 from andon.spaces import View
-
-from .photometry_files import ies, ldt
+from photometry_files import ies, ldt
 
 RNG_SEED = 7
 

@@ -7,8 +7,7 @@ import pytest
 
 from andon.errors import InputError
 from andon.files import read_photometry
-
-from .photometry_files import ies, ldt
+from photometry_files import ies, ldt
 
 
 def read(tmp_path, text, name="lamp.ies", encoding="utf-8"):

@@ -111,9 +111,7 @@ def candela_at(distribution: Distribution, h: Float, v: Float, /) -> Float:
     return np.where(inside_h & inside_v, (1 - up) * low + up * high, 0.0)
 
 
-def _between(
-    knots: Float, angles: Float
-) -> tuple[NDArray[np.intp], Float, NDArray[np.bool_]]:
+def _between(knots: Float, angles: Float) -> tuple[NDArray[np.intp], Float, NDArray[np.bool_]]:
     """The knot before each angle, the share of the way to the next, and whether it is inside."""
     inside = (angles >= knots[0] - EDGE_DEGREES) & (angles <= knots[-1] + EDGE_DEGREES)
     held = np.clip(np.nan_to_num(angles), knots[0], knots[-1])
@@ -179,7 +177,9 @@ def main_planes(distribution: Distribution, /) -> tuple[MainPlane, MainPlane]:
     axis, first, second = {"C": (-z, x, y), "B": (-z, x, -y), "A": (x, z, -y)}[
         distribution.photometry
     ]
-    names = ("C0-C180", "C90-C270") if distribution.photometry == "C" else ("vertical", "horizontal")
+    names = (
+        ("C0-C180", "C90-C270") if distribution.photometry == "C" else ("vertical", "horizontal")
+    )
     count = round(360 / PLANE_STEP_DEGREES)
     angles = np.linspace(-180.0, 180.0, count + 1)
     theta = np.radians(angles)[:, None]

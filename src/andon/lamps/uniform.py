@@ -110,10 +110,11 @@ def _directions(gamma: Float, around: Float) -> Float:
 
 def _error(grid: UniformGrid, distribution: Distribution) -> float:
     rows, columns = grid.candela.shape
+    cells = max(columns - 1, 8)  # around a table of two columns, too
     worst = 0.0
     for v, h in PROBES_PER_CELL:
-        gamma = (np.arange(rows - 1) + v) * np.pi / (rows - 1)
-        around = (np.arange(max(columns - 1, 8)) + h) * 2 * np.pi / max(columns - 1, 8)
+        gamma = np.pi * (np.arange(rows - 1, dtype=np.float64) + v) / (rows - 1)
+        around = 2 * np.pi * (np.arange(cells, dtype=np.float64) + h) / cells
         directions = _directions(gamma[:, None], around)
         deviation = np.abs(grid.at(directions) - candela(distribution, directions))
         worst = max(worst, float(deviation.max()))

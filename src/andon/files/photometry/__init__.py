@@ -10,8 +10,8 @@ EULUMDAT ``.ldt``   Stockmar 1990, Europe: candela per 1000 lm of the lamps, typ
 ======== ========== ================================================================
 
 The readers are ours: the parsers of renderers take what they need and guess the rest, which is how
-a ballast factor gets lost, a floodlight of type B is drawn as if it were of type C, or a file cut in
-half becomes a lamp with half of its light. Here every number is checked, candela stay *linear*
+a ballast factor gets lost, a floodlight of type B is drawn as if it were of type C, or a file cut
+in half becomes a lamp with half of its light. Here every number is checked, candela stay *linear*
 (some viewers store their roots), and what a file claims is compared with what it holds before
 anything is allocated.
 

@@ -62,7 +62,7 @@ MILLIMETRES = 1e-3
 class _Lamps(NamedTuple):
     """The first set of lamps: how many (< 0: absolute photometry), lm and W of them together."""
 
-    count: float
+    number: float
     lumens: float
     watts: float
 
@@ -175,7 +175,7 @@ def read_ldt(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> Distributi
         name=name,
         manufacturer=maker,
         stated_lumens=lamps.lumens * output_ratio or None,
-        lamp_lumens=None if lamps.count < 0 else lamps.lumens,
+        lamp_lumens=None if lamps.number < 0 else lamps.lumens,
         watts=lamps.watts or None,
         opening_m=opening,
         is_round=is_round,

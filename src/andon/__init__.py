@@ -15,7 +15,15 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from andon.errors import AndonError, InputError, MachineError
-    from andon.lamps import DirectionalLamp, HemisphereLamp, PointLamp, SkyLamp, SpotLamp
+    from andon.files import Distribution, read_photometry
+    from andon.lamps import (
+        DirectionalLamp,
+        GoniometricLamp,
+        HemisphereLamp,
+        PointLamp,
+        SkyLamp,
+        SpotLamp,
+    )
     from andon.pipeline import Frame, Renderer, Report, relight, render
     from andon.quantities import (
         CameraFrame,
@@ -39,8 +47,10 @@ _PUBLIC = {
     "CameraFrame": "quantities",
     "DirectionalLamp": "lamps",
     "DisplayImage": "quantities",
+    "Distribution": "files",
     "Frame": "pipeline",
     "Geometry": "quantities",
+    "GoniometricLamp": "lamps",
     "HemisphereLamp": "lamps",
     "Illuminance": "quantities",
     "InputError": "errors",
@@ -59,6 +69,7 @@ _PUBLIC = {
     "load_scene": "scene",
     "look_at": "spaces",
     "photometric": "quantities",
+    "read_photometry": "files",
     "relight": "pipeline",
     "render": "pipeline",
     "scene_from_dict": "scene",
@@ -69,8 +80,10 @@ __all__ = [
     "CameraFrame",
     "DirectionalLamp",
     "DisplayImage",
+    "Distribution",
     "Frame",
     "Geometry",
+    "GoniometricLamp",
     "HemisphereLamp",
     "Illuminance",
     "InputError",
@@ -89,6 +102,7 @@ __all__ = [
     "load_scene",
     "look_at",
     "photometric",
+    "read_photometry",
     "relight",
     "render",
     "scene_from_dict",

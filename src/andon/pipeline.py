@@ -232,7 +232,8 @@ def relight(
     ----------
     photo : (H, W, 3) uint8 or uint16, encoded by `response`; or float, linear.
     view : where its pixels look, without distortion.
-    lamps : `PointLamp`, `SpotLamp`, `DirectionalLamp`, `SkyLamp`, `HemisphereLamp`.
+    lamps : `PointLamp`, `SpotLamp`, `GoniometricLamp`, `DirectionalLamp`, `SkyLamp`,
+        `HemisphereLamp`.
     depth_m : (H, W) metres along the optical axis; NaN, 0 and infinity are holes.
     ambient_lux : E0 that the photograph was taken in: number, three channels or (H, W, 3), > 0.
     dimming : share of E0 that is left, ≥ 0; number or three channels.

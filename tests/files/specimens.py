@@ -15,6 +15,7 @@ from PIL import Image
 
 from andon.files import write_camera, write_exr
 from andon.spaces import View
+from photometry_files import ies, ldt
 
 RNG_SEED = 7
 
@@ -322,4 +323,6 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "camera.toml": _toml,
     "camera.opencv": _write(CAMERA_YAML),
     "response.csv": _write(RESPONSE_CSV),
+    "photometry.ies": _write(ies(horizontals=(0, 90, 180)).encode()),
+    "photometry.ldt": _write(ldt(symmetry=2).encode()),
 }

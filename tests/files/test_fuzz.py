@@ -63,7 +63,8 @@ def by_name(reader: Reader) -> str:
 
 def test_every_registered_reader_has_a_specimen_and_a_kind() -> None:
     assert [reader.name for reader in READERS] == list(SPECIMENS)
-    assert {reader.kind for reader in READERS} == {"picture", "depth", "mesh", "camera", "response"}
+    kinds = {"picture", "depth", "mesh", "camera", "response", "photometry"}
+    assert {reader.kind for reader in READERS} == kinds
 
 
 @pytest.mark.parametrize("reader", READERS, ids=by_name)

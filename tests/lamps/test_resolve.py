@@ -105,7 +105,6 @@ def test_motion_and_order():
 
 NOT_YET = [
     ({"kind": "sphere", "position": [0, 0, 0], "radius_m": 1, "flux_lm": 1}, "kind 'sphere'"),
-    ({"kind": "ies", "position": [0, 0, 0], "file": "a.ies"}, "kind 'ies'"),
     ({"kind": "mesh", "mesh": "a.glb", "luminance_cd_m2": 1}, "kind 'mesh'"),
     ({"kind": "tube", "ends": [[0, 0, 0], [1, 0, 0]], "radius_m": 1, "flux_lm": 1}, "kind 'tube'"),
     (

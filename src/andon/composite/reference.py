@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite.model import Ambient
-from andon.lamps import Lamp, PointLamp, SpotLamp
+from andon.lamps import Lamp, PointLamp, intensity_cd
 from andon.lamps.areas import SphereLamp
-from andon.lamps.distributions import spot_attenuation
 from andon.quantities import CameraFrame, Surface
 from andon.spaces import View
 
@@ -78,13 +77,8 @@ def compose(
 def lamp_luminance(lamp: PointLamp, eye: Float, /) -> Float:
     """(3,) cd/m² of the lamp's visible disc as seen from `eye` (3,): I towards the eye / (π r²)."""
     reach = eye - lamp.position_m
-    intensity = lamp.intensity_cd
-    if isinstance(lamp, SpotLamp):
-        along = reach @ lamp.direction / np.linalg.norm(reach)
-        intensity = intensity * spot_attenuation(
-            along, inner_radians=lamp.inner_radians, outer_radians=lamp.outer_radians
-        )
-    return intensity / (np.pi * lamp.visible_radius_m**2)
+    towards_eye = reach / np.linalg.norm(reach)
+    return intensity_cd(lamp, towards_eye) / (np.pi * lamp.visible_radius_m**2)
 
 
 @dataclass(frozen=True)

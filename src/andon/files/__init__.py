@@ -17,6 +17,7 @@ from andon.files.depth import read_depth_array
 from andon.files.limits import DEFAULT_LIMITS, Limits
 from andon.files.meshes import MeshFile, MeshLight, read_mesh
 from andon.files.paths import confined, open_bounded
+from andon.files.photometry import Distribution, read_photometry
 from andon.files.pictures import (
     Picture,
     decode_picture,
@@ -33,6 +34,7 @@ from andon.files.registry import READERS, reader_for
 __all__ = [
     "DEFAULT_LIMITS",
     "READERS",
+    "Distribution",
     "Limits",
     "MeshFile",
     "MeshLight",
@@ -45,6 +47,7 @@ __all__ = [
     "read_camera",
     "read_depth_array",
     "read_mesh",
+    "read_photometry",
     "read_picture",
     "reader_for",
     "write_camera",

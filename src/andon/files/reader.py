@@ -27,7 +27,8 @@ class Reader:
 
     Attributes
     ----------
-    name : ``kind.format``; the kind is ``picture``, ``depth``, ``mesh`` or ``camera``.
+    name : ``kind.format``; the kind is ``picture``, ``depth``, ``mesh``, ``camera``, ``response``
+        or ``photometry``.
     suffixes : lower case, with the dot.
     read : the function that reads it.
     """

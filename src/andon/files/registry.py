@@ -12,13 +12,14 @@ from typing import Literal
 from andon.files.cameras import CAMERA_READERS
 from andon.files.depth import DEPTH_READERS
 from andon.files.meshes import MESH_READERS
+from andon.files.photometry import PHOTOMETRY_READERS
 from andon.files.pictures import PICTURE_READERS
 from andon.files.reader import Reader, choose_reader
 from andon.files.responses import RESPONSE_READERS
 
 __all__ = ["READERS", "Kind", "reader_for"]
 
-Kind = Literal["picture", "depth", "mesh", "camera", "response"]
+Kind = Literal["picture", "depth", "mesh", "camera", "response", "photometry"]
 
 READERS: tuple[Reader, ...] = (
     *PICTURE_READERS,
@@ -26,6 +27,7 @@ READERS: tuple[Reader, ...] = (
     *MESH_READERS,
     *CAMERA_READERS,
     *RESPONSE_READERS,
+    *PHOTOMETRY_READERS,
 )
 
 

@@ -13,6 +13,7 @@ spot            glTF's cone                    Phong's cosⁿ: never ends, no se
 flux            integral of the actual cone    the "4π" or "π" that engines assume
 colour          keeps the photometric value    RGB × intensity, where blue means darker
 colour temp.    Planck's law, one rule         a fit with a seam between two families
+luminaire       the file's candela, bilinear   smoothing, or a cone fitted to them
 =============== ============================== ==========================================
 
 Sources: KHR_lights_punctual (Khronos); ISO/CIE 11664-1; ITU-R BT.709-6.
@@ -23,9 +24,11 @@ from __future__ import annotations
 from andon.lamps.areas import AreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.lamps.bodies import Body
 from andon.lamps.colour import rgb_factors
+from andon.lamps.intensity import intensity_cd
 from andon.lamps.kinds import AnyAreaLamp, Lamp
 from andon.lamps.model import (
     DirectionalLamp,
+    GoniometricLamp,
     HemisphereLamp,
     PointLamp,
     Shadow,
@@ -37,12 +40,14 @@ from andon.lamps.resolve import resolve_lamps
 
 __all__ = [
     "DirectionalLamp",
+    "GoniometricLamp",
     "HemisphereLamp",
     "Lamp",
     "PointLamp",
     "Shadow",
     "SkyLamp",
     "SpotLamp",
+    "intensity_cd",
     "parse_lamp_option",
     "resolve_lamps",
     "rgb_factors",

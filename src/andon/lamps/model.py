@@ -8,8 +8,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.files.photometry.model import Distribution
+
 __all__ = [
     "DirectionalLamp",
+    "GoniometricLamp",
     "HemisphereLamp",
     "PointLamp",
     "Shadow",
@@ -78,6 +81,24 @@ class SpotLamp(PointLamp):
 
 
 @dataclass(frozen=True)
+class GoniometricLamp(PointLamp):
+    """A luminaire with a measured distribution.
+
+    Attributes
+    ----------
+    intensity_cd : (3,) cd per channel where the distribution has its *maximum*.
+    direction : (3,) unit, the nadir: where γ = 0 (photometric zero of LM-63) points, world.
+    right : (3,) unit, ⟂ `direction`: where C = 0 at γ = 90 (photometric horizontal) points, world.
+        C runs counter-clockwise as seen against `direction`.
+    distribution : only its form counts: candela as a share of their maximum.
+    """
+
+    direction: Float = field(kw_only=True)
+    right: Float = field(kw_only=True)
+    distribution: Distribution = field(kw_only=True)
+
+
+@dataclass(frozen=True)
 class DirectionalLamp:
     """Parallel light.
 
@@ -128,4 +149,3 @@ class HemisphereLamp:
     up: Float
     sky_illuminance_lux: Float
     ground_illuminance_lux: Float
-

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
+from andon.files.photometry import Distribution, read_photometry
 from andon.lamps.colour import factors_from_rgb, rgb_factors
 from andon.lamps.distributions import (
     POINT_SOLID_ANGLE_SR,
     intensity_cd_from_flux,
     spot_solid_angle_sr,
 )
+from andon.lamps.goniometry import flux_lm, maximum_cd, tilt_factor
 from andon.lamps.kinds import Lamp
 from andon.lamps.model import (
     DirectionalLamp,
+    GoniometricLamp,
     HemisphereLamp,
     PointLamp,
     Shadow,
@@ -31,6 +36,7 @@ if TYPE_CHECKING:  # scene imports pydantic; lamps built in Python do not need i
         AnyLamp,
         DirectionalTable,
         HemisphereTable,
+        IesTable,
         PointTable,
         SkyTable,
         SpotTable,
@@ -53,7 +59,11 @@ def resolve_lamps(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
         place = f"lamp[{index}]"
         _refuse_later(scene, place, table)
         with np.errstate(over="ignore"):  # what overflows is refused below
-            lamp = _BUILDERS[table.kind](table)
+            lamp = (
+                _luminaire(scene, place, table)
+                if table.kind == "ies"
+                else _BUILDERS[table.kind](table)
+            )
         light = [getattr(lamp, key, 0.0) for key in _LIGHT]
         if not all(np.isfinite(values).all() for values in light):
             raise InputError("is too large to compute with", file=scene.file, field=place)
@@ -82,7 +92,6 @@ def _refuse_later(scene: Scene, place: str, table: AnyLamp) -> None:
 _POINT_INSTEAD = "use kind 'point' with the same flux_lm and a visible_radius_m"
 _FLAT_INSTEAD = "use kind 'spot' with outer_degrees = 90"
 _INSTEAD = {
-    "ies": "use kind 'spot'",
     "sphere": _POINT_INSTEAD,
     "disk": _FLAT_INSTEAD,
     "rectangle": _FLAT_INSTEAD,
@@ -153,6 +162,60 @@ def _spot(table: SpotTable) -> SpotLamp:
         float(inner),
         float(outer),
     )
+
+
+def _luminaire(scene: Scene, place: str, table: IesTable) -> GoniometricLamp:
+    distribution = _read(scene.path(table.file, f"{place}.file"))
+    direction = _unit(table.direction)
+    peak = table.intensity_cd
+    if peak is None and table.flux_lm is not None:
+        peak = table.flux_lm / flux_lm(distribution) * maximum_cd(distribution)
+    if peak is None:
+        # What is stated is stated of the lamp as it hangs; only the file's own light can droop.
+        tilt = float(np.degrees(np.arccos(np.clip(-direction[1], -1, 1))))
+        peak = maximum_cd(distribution) * tilt_factor(distribution, tilt)
+    return GoniometricLamp(
+        table.name,
+        np.array(table.position),
+        peak * _colour(table),
+        _shadow(table),
+        table.visible_radius_m,
+        direction=direction,
+        right=_right(direction, float(np.radians(table.roll_degrees))),
+        distribution=distribution,
+    )
+
+
+def _right(direction: Float, roll_radians: float) -> Float:
+    """Where C = 0 points: +X for a luminaire that looks down, turned with it the shortest way.
+
+    That is how a luminaire is tilted by hand, and it is continuous but for one that looks straight
+    up (+X there). The roll then turns the planes as C grows: by 90° C = 0 comes to where C = 90
+    was, counter-clockwise seen against `direction`.
+    """
+    x, y, z = direction
+    planar = x * x + z * z
+    if y > 0 and planar < 1e-24:
+        right = np.array([1.0, 0.0, 0.0])
+    else:
+        below_zenith = planar / (1 + y) if y > 0 else 1 - y  # 1 − y without losing digits
+        right = np.array([1 - x * x / below_zenith, x, -x * z / below_zenith])
+    side = np.cross(right, direction)
+    return np.cos(roll_radians) * right + np.sin(roll_radians) * side
+
+
+def _read(path: Path) -> Distribution:
+    """The file's distribution; read again only when it changed, not for each frame."""
+    try:
+        state = path.stat()
+    except OSError:
+        return read_photometry(path)  # says what is wrong
+    return _read_once(path, state.st_mtime_ns, state.st_size)
+
+
+@lru_cache(maxsize=64)
+def _read_once(path: Path, _modified: int, _bytes: int) -> Distribution:
+    return read_photometry(path)
 
 
 def _directional(table: DirectionalTable) -> DirectionalLamp:

@@ -11,7 +11,7 @@ from andon.lamps.distributions import POINT_SOLID_ANGLE_SR, spot_attenuation, sp
 from andon.lamps.model import PointLamp, SpotLamp
 from andon.lamps.solids import quarters
 
-__all__ = ["Beam", "beam_of", "beam_flux", "solid_angles"]
+__all__ = ["Beam", "beam_flux", "beam_of", "solid_angles"]
 
 Float = NDArray[np.float64]
 

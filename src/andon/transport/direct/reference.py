@@ -7,7 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.lamps import DirectionalLamp, HemisphereLamp, Lamp, PointLamp, SkyLamp, SpotLamp
+from andon.lamps import (
+    DirectionalLamp,
+    HemisphereLamp,
+    Lamp,
+    PointLamp,
+    SkyLamp,
+    intensity_cd,
+)
 from andon.lamps.areas import (
     AreaLamp,
     DiskLamp,
@@ -16,7 +23,6 @@ from andon.lamps.areas import (
     SphereLamp,
     TubeLamp,
 )
-from andon.lamps.distributions import spot_attenuation
 from andon.lamps.edges import textured_edges
 from andon.lamps.form_factors import (
     disk_factor,
@@ -38,13 +44,13 @@ Float = NDArray[np.float64]
 def illuminance(lamp: Lamp | AreaLamp, position: Float, normal: Float, /) -> Float:
     """Unshadowed illuminance (..., 3) in lux at `position` (..., 3) with unit `normal` (..., 3).
 
-    Source: the relighting paper, equation (1), with I(ω) for spots; of area lamps
+    Source: the relighting paper, equation (1), with I(ω) of `intensity_cd`; of area lamps
     `andon.lamps.form_factors`.
     """
     match lamp:
         case AreaLamp():
             return _from_an_area(lamp, position, normal)
-        case PointLamp():  # and SpotLamp, which is one with a cone
+        case PointLamp():  # and spots and luminaires, which are points with an I(ω)
             return _from_a_place(lamp, position, normal)
         case DirectionalLamp():
             cosine = -normal @ lamp.direction
@@ -62,12 +68,7 @@ def _from_a_place(lamp: PointLamp, position: Float, normal: Float) -> Float:
     square = np.einsum("...i,...i->...", reach, reach)
     cosine_over_square = np.einsum("...i,...i->...", reach, normal) / square**1.5
     factor = np.maximum(cosine_over_square, 0)
-    if isinstance(lamp, SpotLamp):
-        along = -(reach @ lamp.direction) / np.sqrt(square)
-        factor = factor * spot_attenuation(
-            along, inner_radians=lamp.inner_radians, outer_radians=lamp.outer_radians
-        )
-    return factor[..., None] * lamp.intensity_cd
+    return factor[..., None] * intensity_cd(lamp, -reach / np.sqrt(square)[..., None])
 
 
 def _from_an_area(lamp: AreaLamp, position: Float, normal: Float) -> Float:

@@ -31,7 +31,13 @@ __all__ = ["load_surface", "object_geometry", "surface_of_depth", "surface_of_me
 Float = NDArray[np.float64]
 
 # Lift of receivers before a shadow is looked up: float32 rounding for meshes, more than stereo
-# and structured light scatter for depth images, and twice the decimation's own error.
+# and structured light scatter for depth images, and twice the decimation's own error. Twice,
+# since that error is a 95th percentile of unsigned distances: the worst of the other 5 % lie
+# about twice as far, and lamps look at them at a slant. Measured against shadows of all
+# triangles, the sum of false and lost shadows is smallest at 1.9 times the error on the
+# demonstration, at 2.2 times on noisy Kinect depth and at 1 to 2 times in the furnished room,
+# and flat around that; half as much lift doubles the false ones (acne), twice as much doubles
+# the lost ones.
 MESH_BIAS_M = 2e-4
 DEPTH_BIAS_M = 5e-3
 DECIMATION_MARGIN = 2.0

@@ -11,7 +11,7 @@ from andon.quantities import Geometry
 from andon.rays import face_normals
 from andon.spaces import View, look_at
 from andon.surface.occluder import decimated, merged
-from andon.surface.triangulate import triangulate_depth
+from andon.surface.triangulate import thickened, triangulate_depth
 from andon.verify.rooms import camera_in, furnished_room
 from comparison import assert_agree
 from worlds import sphere_depth, unit
@@ -66,6 +66,27 @@ def test_no_triangle_crosses_a_jump_or_touches_a_hole():
     assert len(triangulate_depth(depth, PINHOLE, max_jump=0.07).triangles) == 2 * 39 * 29 - 6
 
 
+def test_latlong_is_closed_all_around():
+    """A ball seen from inside: rims are left at the poles only, no ray slips out between."""
+    view = View("latlong", 24, 12, world_from_camera=POSE)
+    geometry = triangulate_depth(np.full(view.shape, 2.0), view)
+    assert len(geometry.triangles) == 2 * 24 * 11
+    assert len(geometry.positions) == 24 * 12
+    edges = directed_edges(geometry)
+    rim = [edge for edge in edges if (edge[1], edge[0]) not in edges]
+    assert len(rim) == 2 * 24
+    assert {a // 24 for edge in rim for a in edge} == {0, 11}
+    middle = geometry.positions[geometry.triangles].mean(axis=1)
+    facing = np.einsum("ij,ij->i", face_normals(geometry), view.position - middle)
+    assert (facing > 0).all()
+    backwards = POSE[:3, :3] @ (0, 0, -1.0)
+    assert plain_distance(geometry, view.position, backwards) == pytest.approx(2, rel=0.05)
+    jump = np.full(view.shape, 2.0)
+    jump[:, 12:] = 3.0
+    # Two jumps now: in the middle of the picture, and at its seam.
+    assert len(triangulate_depth(jump, view).triangles) == 2 * 22 * 11
+
+
 def directed_edges(geometry):
     t = geometry.triangles
     return Counter(map(tuple, np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]]).tolist()))
@@ -78,7 +99,7 @@ def volume(geometry):
 
 def test_thickness_closes_the_sheet():
     depth = np.full(PINHOLE.shape, 2.0)
-    geometry = triangulate_depth(depth, PINHOLE, thickness_m=0.1)
+    geometry = thickened(triangulate_depth(depth, PINHOLE), PINHOLE.position, 0.1)
     edges = directed_edges(geometry)
     assert set(edges.values()) == {1}
     assert all(edges[b, a] == 1 for a, b in edges)
@@ -95,7 +116,7 @@ def test_thickness_closes_whatever_holes_left(seed, share):
     generator = np.random.default_rng(seed)
     depth = np.where(generator.random(view.shape) < share, np.nan, 2.0)
     depth = depth * (1 + 0.1 * (generator.random(view.shape) < 0.3))
-    geometry = triangulate_depth(depth, view, thickness_m=0.2)
+    geometry = thickened(triangulate_depth(depth, view), view.position, 0.2)
     edges = directed_edges(geometry)
     assert all(edges[b, a] == count for (a, b), count in edges.items())
     if len(geometry.triangles):
@@ -106,7 +127,8 @@ def test_thickness_closes_whatever_holes_left(seed, share):
 def test_pictures_too_small_for_a_triangle(depth):
     for shape in ((1, 1), (1, 5), (5, 1)):
         view = View("pinhole", shape[1], shape[0], 3.0, 3.0)
-        geometry = triangulate_depth(np.full(shape, depth), view, thickness_m=0.1)
+        sheet = triangulate_depth(np.full(shape, depth), view)
+        geometry = thickened(sheet, view.position, 0.1)
         assert geometry.triangles.shape == (0, 3)
 
 
@@ -130,7 +152,8 @@ def plain_distance(geometry, origin, direction):
         q = np.cross(origin - a, b - a)
         v = q @ direction / determinant
         t = np.einsum("ij,ij->i", c - a, q) / determinant
-    return t[(u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)].min(initial=np.inf)
+        hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)
+    return t[hit].min(initial=np.inf)
 
 
 def plain_nearest(geometry, point):

@@ -117,24 +117,71 @@ class RayScene:
         return self._run(points, directions, query="OCCLUDED") < 0
 
     def crossings(self, origin: Float, directions: Float, /) -> NDArray[np.int64]:
-        """(n,) how many triangles each ray from `origin` (3,) crosses (brute force, exact)."""
-        a, b, c = np.moveaxis(self._corners, 1, 0)
-        edge1, edge2, offset = b - a, c - a, origin - a
+        """(n,) how many triangles each ray from `origin` (3,) crosses (brute force, exact).
+
+        A ray on an edge or a corner counts as one that passes a hair beside it, the same hair for
+        all triangles, so that closed surfaces are crossed an odd number of times from inside.
+        Triangles without an area are never crossed.
+        """
+        corners = np.moveaxis(self._corners - origin, (1, 2), (0, 1))  # (corner, xyz, triangle)
         counts = np.zeros(len(directions), np.int64)
-        for index, direction in enumerate(directions):  # Möller & Trumbore 1997
-            p = np.cross(direction, edge2)
-            determinant = np.einsum("ij,ij->i", edge1, p)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                u = np.einsum("ij,ij->i", offset, p) / determinant
-                q = np.cross(offset, edge1)
-                v = (q @ direction) / determinant
-                t = np.einsum("ij,ij->i", edge2, q) / determinant
-            counts[index] = np.count_nonzero((u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0))
+        for index, direction in enumerate(directions):
+            # Seen along the ray: corners as points of a plane, the ray at its origin.
+            x, y, z = (_along(corners, axis) for axis in _frame(direction))
+            seen = [_side(x[i - 2], y[i - 2], x[i - 1], y[i - 1]) for i in range(3)]
+            around = np.abs(sum(sign for _, sign in seen)) == 3
+            # Barycentric weights times depths: of the sign of the hit's, whatever the area's.
+            ahead = sum(weight * z[i] for i, (weight, _) in enumerate(seen))
+            counts[index] = np.count_nonzero(around & (ahead * seen[0][1] > 0))
         return counts
 
 
+def _frame(direction: Float) -> Float:
+    """(3, 3) rows: two axes across `direction`, and itself."""
+    aside = np.cross(direction, np.eye(3)[np.abs(direction).argmin()])
+    return np.asarray([aside, np.cross(direction, aside), direction], np.float64)
+
+
+def _along(corners: Float, axis: Float) -> Float:
+    # Written out: a matrix product may add the last columns in another order and round otherwise,
+    # and one corner of two triangles would be two points.
+    return corners[:, 0] * axis[0] + corners[:, 1] * axis[1] + corners[:, 2] * axis[2]
+
+
+def _side(ax: Float, ay: Float, bx: Float, by: Float) -> tuple[Float, Float]:
+    """Twice the area (n,) that an edge from a to b spans with the origin; and its sign, exactly.
+
+    The sign says on which side of the edge the origin lies. Exactly on it, the origin counts as
+    (ε, ε²) (simulation of simplicity, Edelsbrunner & Mücke 1990): 0 only where a is b.
+    """
+    left, right = ax * by, ay * bx
+    # Rounding is monotonic: unequal rounded products differ the same way as the exact ones.
+    sign = np.sign(left - right)
+    tied = np.flatnonzero(sign == 0)
+    if len(tied):
+        a, b = (ax[tied], ay[tied]), (bx[tied], by[tied])
+        exact = np.sign(_rounding(a[0], b[1]) - _rounding(a[1], b[0]))
+        for shift in (a[1] - b[1], b[0] - a[0]):
+            exact = np.where(exact == 0, np.sign(shift), exact)
+        sign[tied] = exact
+    return left - right, sign
+
+
+def _rounding(x: Float, y: Float) -> Float:
+    """x·y less its rounded value, exactly (Dekker 1971)."""
+    (x1, x0), (y1, y0) = _halves(x), _halves(y)
+    error: Float = ((x1 * y1 - x * y) + x1 * y0 + x0 * y1) + x0 * y0
+    return error
+
+
+def _halves(x: Float) -> tuple[Float, Float]:
+    scaled = x * 134217729.0  # 2²⁷ + 1: of 53 bits, 26 in each half
+    high = scaled - (scaled - x)
+    return high, x - high
+
+
 def _intersect_plane(origins: Float, directions: Float, corners: Float) -> tuple[Float, Float]:
-    a, b, c = np.moveaxis(corners, 1, 0)
+    a, b, c = np.moveaxis(corners, 1, 0)  # Möller & Trumbore 1997
     edge1, edge2, offset = b - a, c - a, origins - a
     p, q = np.cross(directions, edge2), np.cross(offset, edge1)
     inverse = 1 / np.einsum("ij,ij->i", edge1, p)

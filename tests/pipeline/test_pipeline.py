@@ -267,7 +267,7 @@ DEPTH = np.full((10, 20), 2.0)
         ({"photo": PHOTO[..., 0]}, r"photo: must be \(H, W, 3\)"),
         ({"photo": PHOTO.astype(int)}, "photo: must be"),
         ({"photo": PHOTO * np.float32(np.nan)}, "NaN"),
-        ({"depth_m": DEPTH.T}, "is 10×20 px"),
+        ({"depth_m": DEPTH.T}, "depth_m: must be an array"),
         ({"depth_m": DEPTH * np.nan}, "no pixel with a depth above 0"),
         ({"ambient_lux": 0.0}, "ambient_lux: must be finite and > 0"),
         ({"ambient_lux": [1.0, 2.0]}, "ambient_lux: must be a number"),

@@ -87,10 +87,7 @@ def test_visibility_of_infinity():
 
 
 def test_crossings_of_a_box_are_even_outside_and_odd_inside():
-    from andon.verify.solids import box
-
-    solid = box((2, 2, 2))
-    geometry = Geometry(solid.positions, solid.triangles.astype(np.int32))
+    geometry = box_geometry()
     directions = unit(np.random.default_rng(3).normal(size=(40, 3)))
     centre = geometry.positions.mean(axis=0)
     inside = RayScene(geometry).crossings(centre + np.array([0.1, 0.2, 0.3]), directions)
@@ -99,12 +96,80 @@ def test_crossings_of_a_box_are_even_outside_and_odd_inside():
     assert set(outside.tolist()) <= {0, 2}
 
 
+def box_geometry(size=(2, 2, 2), shift=(0, 0, 0)):
+    from andon.verify.solids import box
+
+    solid = box(size)
+    return Geometry(solid.positions + np.asarray(shift, float), solid.triangles.astype(np.int32))
+
+
+def test_crossings_on_edges_and_corners_are_counted_once():
+    """Diagonals, edges, corners and axes of a cube around its own middle, to the bit."""
+    geometry = box_geometry()
+    middle = (geometry.positions.min(axis=0) + geometry.positions.max(axis=0)) / 2
+    corners = np.unique(geometry.positions, axis=0) - middle
+    steps = np.array([-1.0, 0, 1])
+    grid = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
+    directions = np.concatenate([corners, grid[np.abs(grid).sum(axis=1) > 0]])
+    inside = RayScene(geometry).crossings(middle, directions)
+    assert (inside == 1).all(), inside
+    outside = RayScene(geometry).crossings(middle + np.array([5.0, 0, 0]), directions)
+    assert (outside % 2 == 0).all(), outside
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_crossings_through_every_corner_and_edge_of_a_ball(seed):
+    """Aimed at what triangles share, with all the rounding of odd numbers: still one way out."""
+    from worlds import ball
+
+    generator = np.random.default_rng(seed)
+    geometry = ball(1.0, generator.normal(size=3), 3)
+    triangles = geometry.positions[geometry.triangles]
+    targets = np.concatenate([geometry.positions, (triangles[:, 0] + triangles[:, 1]) / 2])
+    inside = geometry.positions.mean(axis=0) + generator.normal(size=3) * 0.2
+    assert (RayScene(geometry).crossings(inside, unit(targets - inside)) == 1).all()
+    outside = inside + 3 * unit(generator.normal(size=3))
+    assert (RayScene(geometry).crossings(outside, unit(targets - outside)) % 2 == 0).all()
+
+
+@pytest.mark.filterwarnings("error")
+def test_crossings_take_triangles_without_area_and_are_silent():
+    """Corners that are one, and corners in a row, in a wall and across the box."""
+    solid = box_geometry((2, 2, 2))
+    low, high = solid.positions.min(axis=0), solid.positions.max(axis=0)
+    a, b = solid.positions[solid.triangles[0, :2]]
+    extra = [a, a, a, a, b, b, a, (a + b) / 2, b, low, (low + high) / 2, high]
+    positions = np.concatenate([solid.positions, extra])
+    more = len(solid.positions) + np.arange(len(extra)).reshape(-1, 3)
+    flat = RayScene(Geometry(positions, np.concatenate([solid.triangles, more]).astype(np.int32)))
+    middle = (low + high) / 2 + (0.1, -0.2, 0.3)
+    directions = unit(np.random.default_rng(4).normal(size=(200, 3)))
+    at_extra = unit(np.array(extra[3:9]) - middle)
+    everywhere = np.concatenate([directions, at_extra, unit(np.eye(3))])
+    assert (flat.crossings(middle, everywhere) == 1).all()
+    assert (flat.crossings(middle + np.array([9.0, 0, 0]), everywhere) % 2 == 0).all()
+    # From a place in the plane of a triangle, and from one of its corners: no warning either.
+    flat.crossings(a, everywhere)
+
+
+def test_crossings_of_a_torn_sheet_are_those_of_its_triangles():
+    geometry = soup(80, seed=5)
+    directions = unit(np.random.default_rng(6).normal(size=(100, 3)))
+    origin = np.array([0.05, -0.1, 0.2])
+    each = [
+        np.isfinite(plain_distances(Geometry(geometry.positions, t[None]), origin, directions))
+        for t in geometry.triangles
+    ]
+    assert (RayScene(geometry).crossings(origin, directions) == np.sum(each, axis=0)).all()
+
+
 def test_an_empty_scene_hides_nothing():
     scene = RayScene(NOTHING)
     points = np.zeros((3, 3))
     assert scene.is_visible(points, np.ones(3)).all()
     assert scene.sees_infinity(points, np.ones(3)).all()
     assert (scene.first_hits(points, np.ones((3, 3))).triangle == -1).all()
+    assert scene.crossings(points[0], np.ones((3, 3))).tolist() == [0, 0, 0]
     assert len(scene.first_hits(points[:0], points[:0]).triangle) == 0
 
 

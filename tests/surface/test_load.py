@@ -187,6 +187,64 @@ def test_objects_need_a_surface_with_a_place(tmp_path):
         loaded(tmp_path, CAMERA, surface={"normals": "n.exr"}, object=[{"mesh": "box.glb"}])
 
 
+def test_one_picture_of_normals_is_refused_for_two_eyes(tmp_path):
+    write_normals(tmp_path / "n.exr", NORMALS)
+    scene = scene_from_dict({"surface": {"normals": "n.exr"}}, folder=tmp_path)
+    views = {name: View(**{**vars(CAMERA), "name": name}) for name in ("left", "right")}
+    with pytest.raises(InputError, match=r"surface\.normals: is one picture for two eyes; give a"):
+        load_surface(scene, views)
+
+
+# ── materials ─────────────────────────────────────────────────────────────────────────────────
+
+
+def write_many_materials(path, count, picture=None):
+    """An OBJ of `count` triangles of as many materials; its .mtl beside it."""
+    lines, looks = [f"mtllib {path.stem}.mtl"], []
+    for index in range(count):
+        lines += [f"v {index} 0 -3", f"v {index} 1 -3", f"v {index + 1} 0 -3"]
+        lines += ["vt 0 0", "vt 0 1", "vt 1 0"]
+        a = 3 * index + 1
+        lines += [f"usemtl m{index}", f"f {a}/{a} {a + 1}/{a + 1} {a + 2}/{a + 2}"]
+        looks += [f"newmtl m{index}", f"Kd {index / count} 0.5 0.5"]
+        looks += [f"map_Kd {picture}"] if picture else []
+    path.write_text("\n".join(lines))
+    path.with_suffix(".mtl").write_text("\n".join(looks))
+
+
+def test_materials_that_emit_come_first(tmp_path):
+    """The GPU looks emission up among 256 materials: a lamp that comes after 300 still glows."""
+    write_many_materials(tmp_path / "many.obj", 300)
+    write_glb(tmp_path / "lamp.glb", block((1, 1, 1), (0, 0, 0)), emissive=(1.0, 0.5, 0.25))
+    model = loaded(tmp_path, object=[{"mesh": "many.obj"}, {"mesh": "lamp.glb"}])
+    objects = model.objects
+    assert len(objects.materials) == 301
+    assert any(objects.materials[0].emissive_cd_m2)
+    assert not any(any(m.emissive_cd_m2) for m in objects.materials[1:])
+    assert (objects.material_ids[300:] == 0).all()
+    reds = [objects.materials[i].reflectance[0] for i in objects.material_ids[:300]]
+    assert_agree(reds, np.arange(300) / 300, atol=1e-6)
+
+
+def test_too_many_materials_that_emit_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("andon.surface.load.MAX_EMITTING", 2)
+    write_glb(tmp_path / "lamp.glb", block((1, 1, 1), (0, 0, 0)), emissive=(1.0, 0.5, 0.25))
+    lamps = [{"mesh": "lamp.glb", "name": f"l{index}"} for index in range(3)]
+    assert loaded(tmp_path, object=lamps[:2]).objects.materials
+    with pytest.raises(InputError, match="object: 3 materials of virtual objects emit light, at "):
+        loaded(tmp_path, object=lamps)
+
+
+@pytest.mark.parametrize("what", ["object", "surface"])
+def test_too_many_textures_are_refused(tmp_path, monkeypatch, what):
+    monkeypatch.setattr("andon.surface.load.MAX_TEXTURES", 3)
+    write_png(tmp_path / "t.png", np.full((2, 2, 3), 99, np.uint8))
+    write_many_materials(tmp_path / "many.obj", 4, "t.png")
+    entry = {"mesh": "many.obj"}
+    with pytest.raises(InputError, match="has 4 materials with a texture, at most 3 can be drawn"):
+        loaded(tmp_path, **{what: [entry] if what == "object" else entry})
+
+
 # ── depth with a distorted lens ───────────────────────────────────────────────────────────────
 
 
@@ -208,6 +266,36 @@ def test_depth_is_undistorted_with_its_picture(tmp_path):
     assert seen.mean() > 0.8
     # Nearest pixel: at most half a pixel of the plane's slope.
     assert_agree(depth[seen], (-2 / (VIEW.rays_planar() @ normal))[seen], rtol=0.5 / 35 * 0.5)
+
+
+@pytest.mark.parametrize("kind", ["distance", "z"])
+def test_the_lens_comes_before_the_kind_of_depth(tmp_path, kind):
+    """Numbers of a captured pixel belong to the ray that its lens had, whatever they measure.
+
+    The same slanted wall as distances and as depths through a strong lens: both give its plane,
+    everywhere alike. Distances turned into depth by the *captured* pixels' directions would be
+    wrong by 4 % at the rim.
+    """
+    import cv2
+
+    normal = unit([0.1, 0.05, -1])
+    large = View("pinhole", 160, 120, 80.0, 80.0, 79.5, 59.5)
+    lens = (0.25, 0.05, 0.0, 0.0)
+    k = np.array([[80.0, 0, 79.5], [0, 80, 59.5], [0, 0, 1]])
+    pixels = large.pixel_grid().reshape(-1, 1, 2)
+    flat = cv2.undistortPoints(pixels, k, np.array(lens)).reshape(*large.shape, 2)
+    rays = np.dstack([flat, np.ones(large.shape)])
+    captured = -2 / (rays @ normal)
+    if kind == "distance":
+        captured = captured * np.linalg.norm(rays, axis=-1)
+    np.save(tmp_path / "depth.npy", captured)
+    view = View(**{**vars(large), "distortion": lens})
+    model = loaded(tmp_path, view, surface={"depth": {"file": "depth.npy", "kind": kind}})
+    depth = model.depth["mono"]
+    seen = np.isfinite(depth)
+    assert seen.mean() > 0.6
+    # Nearest pixel: half a pixel of the slope of the plane, and of the distance at the rim.
+    assert_agree(depth[seen], (-2 / (large.rays_planar() @ normal))[seen], rtol=0.01)
 
 
 def test_lonely_depths_are_refused(tmp_path):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,15 +35,15 @@ def prepare_arrays(
     photometry: Photometry,
 ) -> Prepared:
     """See `andon.relight`."""
-    if view.distortion:
-        raise InputError("must be undistorted", field="view", remedy="use andon.lenses.undistort")
+    _check_types(view, lamps, response, photometry)
     names = [lamp.name for lamp in lamps]
     if len(set(names)) < len(names):  # shadow maps are kept by name
         raise InputError(f"names must differ, got {names}", field="lamps", remedy="rename one")
-    depth = depth_from_raw(np.asarray(depth_m, np.float64), view, DepthEncoding())
+    picture = _picture(photo)
+    depth = depth_from_raw(_depth(depth_m, view), view, DepthEncoding())
     ambient = Ambient(_lux(ambient_lux, view), _dimming(dimming))
     frame = frame_from_picture(
-        _picture(photo),
+        picture,
         view,
         response,
         luminance_per_unit=float(photometric(ambient.mean_lux)) / np.pi,
@@ -57,22 +57,89 @@ def prepare_arrays(
     )
 
 
-def _picture(photo: NDArray[Any]) -> Picture:
-    is_codes = photo.dtype in (np.dtype(np.uint8), np.dtype(np.uint16))
+def _check_types(view: Any, lamps: tuple[Any, ...], response: Any, photometry: Any) -> None:
+    """What a type checker would have said, for those who use none."""
+    if not isinstance(view, View):
+        raise InputError(
+            f"must be an andon.View, got {_described(view)}",
+            field="view",
+            remedy='e.g. andon.View("pinhole", width, height, fx, fy, cx, cy)',
+        )
+    if view.distortion:
+        raise InputError("must be undistorted", field="view", remedy="use andon.lenses.undistort")
+    for index, lamp in enumerate(lamps):
+        if not isinstance(lamp, get_args(Lamp)):
+            raise InputError(
+                f"must be a lamp, got {_described(lamp)}",
+                field=f"lamps[{index}]",
+                remedy="e.g. andon.PointLamp(name, position_m, intensity_cd)",
+            )
+    if not isinstance(response, Response):
+        raise InputError(
+            f"must be an andon.Response, got {_described(response)}",
+            field="response",
+            remedy='e.g. andon.Response("srgb")',
+        )
+    if photometry not in get_args(Photometry):
+        words = " or ".join(get_args(Photometry))
+        raise InputError(f"must be {words}, got {_described(photometry)}", field="photometry")
+
+
+def _described(value: Any) -> str:
+    """A value of any type for a message: what it is, and short ones as they are."""
+    if hasattr(value, "dtype"):
+        return f"{np.shape(value)} {value.dtype}"
+    if value is None or isinstance(value, str | int | float):
+        return repr(value)[:40]
+    return f"a {type(value).__name__}"
+
+
+def _numbers(values: Any, field: str, wanted: str) -> NDArray[np.float64]:
+    """`values` as float64. Raises `InputError` for what is no array of real numbers."""
+    try:
+        found = np.asarray(values)
+    except (ValueError, TypeError):  # lists of unequal lengths
+        found = np.empty(0, object)
+    if found.dtype.kind not in "biuf":
+        raise InputError(f"must be {wanted}, got {_described(values)}", field=field)
+    return found.astype(np.float64)
+
+
+def _depth(depth_m: Any, view: View) -> NDArray[np.float64]:
+    wanted = f"an array ({view.height}, {view.width}) of metres"
+    depth = _numbers(depth_m, "depth_m", wanted)
+    if depth.shape != view.shape:
+        raise InputError(
+            f"must be {wanted}, the view's (height, width), got {depth.shape}",
+            field="depth_m",
+            remedy="give depth and view of the same picture",
+        )
+    return depth
+
+
+def _picture(photo: Any) -> Picture:
+    if not hasattr(photo, "__array__"):
+        raise InputError(
+            f"must be an array (H, W, 3), got {_described(photo)}",
+            field="photo",
+            remedy="e.g. np.asarray(photo, np.uint8)",
+        )
+    pixels: NDArray[Any] = np.asarray(photo)
+    is_codes = pixels.dtype in (np.dtype(np.uint8), np.dtype(np.uint16))
     if (
-        photo.ndim != 3
-        or photo.shape[2] != 3
-        or not (is_codes or np.issubdtype(photo.dtype, np.floating))
+        pixels.ndim != 3
+        or pixels.shape[2] != 3
+        or not (is_codes or np.issubdtype(pixels.dtype, np.floating))
     ):
         raise InputError(
-            f"must be (H, W, 3) uint8, uint16 or float, got {photo.shape} {photo.dtype}",
+            f"must be (H, W, 3) uint8, uint16 or float, got {pixels.shape} {pixels.dtype}",
             field="photo",
         )
-    return Picture(photo, "srgb" if is_codes else "linear")
+    return Picture(pixels, "srgb" if is_codes else "linear")
 
 
 def _lux(ambient_lux: Any, view: View) -> NDArray[np.float64]:
-    lux = np.asarray(ambient_lux, np.float64)
+    lux = _numbers(ambient_lux, "ambient_lux", "a number, three channels or (H, W, 3)")
     if lux.shape not in ((), (3,), (*view.shape, 3)):
         raise InputError(
             f"must be a number, three channels or (H, W, 3), got {lux.shape}", field="ambient_lux"
@@ -83,7 +150,7 @@ def _lux(ambient_lux: Any, view: View) -> NDArray[np.float64]:
 
 
 def _dimming(dimming: Any) -> tuple[float, float, float]:
-    share = np.asarray(dimming, np.float64)
+    share = _numbers(dimming, "dimming", "a number or three channels")
     if share.shape not in ((), (3,)):
         raise InputError(f"must be a number or three channels, got {share.shape}", field="dimming")
     r, g, b = np.broadcast_to(share, 3)

@@ -19,7 +19,6 @@ def triangulate_depth(
     /,
     *,
     max_jump: float = 0.05,
-    thickness_m: float | None = None,
     normals: Float | None = None,
 ) -> Geometry:
     """Geometry in the world from depth (H, W): two triangles per 2×2 pixels, none across a jump.
@@ -30,15 +29,17 @@ def triangulate_depth(
         │ ╲ │      most (1 + max_jump) times the nearest; triangles face the camera
         c───d
 
+    A latlong picture goes all around: its last column is joined to its first.
+
     Parameters
     ----------
-    thickness_m : if given, the sheet is doubled that far behind itself along the rays and its
-        rims are closed, so that light from behind does not slip through cuts.
     normals : (H, W, 3) unit, world, finite where depth is: kept at the corners of a sheet, so
         that another eye sees the same slopes; without them triangles are flat.
     """
     height, width = depth.shape
     index = np.arange(height * width, dtype=np.int64).reshape(height, width)
+    if view.projection == "latlong" and width > 2:  # of two columns both sides are joined anyway
+        index = np.concatenate([index, index[:, :1]], axis=1)
     a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, :-1], index[1:, 1:]
     corners = np.concatenate(
         [np.stack([a, c, d], axis=-1).reshape(-1, 3), np.stack([a, d, b], axis=-1).reshape(-1, 3)]
@@ -52,18 +53,18 @@ def triangulate_depth(
     points = rays * depth.ravel()[used, None]
     triangles = triangles.reshape(-1, 3)
     corner_normals = None if normals is None else normals.reshape(-1, 3)[used]
-    if thickness_m:
-        points, triangles = _thicken(points, triangles, rays, thickness_m)
-        corner_normals = None
     world = transform_points(view.world_from_camera, points)
     return Geometry(world, triangles.astype(np.int32), corner_normals)
 
 
-def _thicken(
-    points: Float, triangles: NDArray[np.int64], rays: Float, thickness_m: float
-) -> tuple[Float, NDArray[np.int64]]:
-    """The sheet, its copy behind it, and a wall along every edge that has one triangle only."""
-    count = len(points)
+def thickened(sheet: Geometry, eye: Float, thickness_m: float, /) -> Geometry:
+    """The sheet doubled `thickness_m` behind itself as seen from `eye` (3,), rims closed.
+
+    Light from behind then does not slip through cuts. A wall stands along every edge that has one
+    triangle only.
+    """
+    points, triangles = sheet.positions, sheet.triangles.astype(np.int64)
+    count, rays = len(points), points - eye
     unit = rays / np.linalg.norm(rays, axis=1, keepdims=True)
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     key = np.sort(edges, axis=1) @ np.array([count, 1])
@@ -77,11 +78,4 @@ def _thicken(
         ]
     )
     both = np.concatenate([triangles, triangles[:, ::-1] + count, walls])
-    return np.concatenate([points, points + unit * thickness_m]), both
-
-
-def thickened(sheet: Geometry, eye: Float, thickness_m: float, /) -> Geometry:
-    """The sheet doubled `thickness_m` behind itself as seen from `eye` (3,), rims closed."""
-    triangles = sheet.triangles.astype(np.int64)
-    points, closed = _thicken(sheet.positions, triangles, sheet.positions - eye, thickness_m)
-    return Geometry(points, closed.astype(np.int32))
+    return Geometry(np.concatenate([points, points + unit * thickness_m]), both.astype(np.int32))

@@ -49,6 +49,7 @@ def summed(lamps):
         layers={"point": 0},
         samples={name: 16 * i for i, name in enumerate(soft)},
         edges={"polygon": (0, 4)},
+        tables={},
         map_size=1024,
         soft_map_size=256,
         triangles=5,

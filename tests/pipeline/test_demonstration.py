@@ -8,8 +8,8 @@ from PIL import Image
 
 from andon.engines.prepared import prepare
 from andon.pipeline import Renderer
-from andon.rays import RayScene
 from andon.scene import load_scene
+from andon.transport.direct.casters import ShadowRays
 from andon.transport.direct.reference import visibility
 from andon.verify.edges import near_change
 
@@ -33,7 +33,7 @@ def expected(prepared):
 
 def shadow_edges(prepared, surface):
     """(H, W) bool: within 2 px of where a lamp's shadow begins or ends."""
-    casters = RayScene(prepared.surface.shadow_casters)
+    casters = ShadowRays(prepared.casters(()))
     bias = prepared.surface.bias
     lift = np.where(surface.is_object, bias.object_m, bias.real_m)
     points = surface.position + surface.normal * lift[..., None]

@@ -39,14 +39,22 @@ from andon.lamps.parse import parse_lamp_option
 from andon.lamps.resolve import resolve_lamps
 
 __all__ = [
+    "AnyAreaLamp",
+    "AreaLamp",
+    "Body",
     "DirectionalLamp",
+    "DiskLamp",
     "GoniometricLamp",
     "HemisphereLamp",
     "Lamp",
+    "MeshLamp",
     "PointLamp",
+    "PolygonLamp",
     "Shadow",
     "SkyLamp",
+    "SphereLamp",
     "SpotLamp",
+    "TubeLamp",
     "intensity_cd",
     "parse_lamp_option",
     "resolve_lamps",

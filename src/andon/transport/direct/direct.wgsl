@@ -116,4 +116,5 @@ fn hemisphere_illuminance(lamp: i32, normal: vec3f) -> vec3f {
 //!import andon/transport/direct/shadows/filter_none.wgsl
 //!import andon/transport/direct/soft.wgsl
 //!import andon/transport/direct/area_lamps.wgsl
+//!import andon/transport/direct/luminaires.wgsl
 //!import andon/transport/direct/sum.wgsl

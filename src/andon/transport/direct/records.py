@@ -11,9 +11,18 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.gpu.layout import HostStruct
-from andon.lamps import DirectionalLamp, HemisphereLamp, Lamp, PointLamp, SkyLamp, SpotLamp
+from andon.lamps import (
+    DirectionalLamp,
+    GoniometricLamp,
+    HemisphereLamp,
+    Lamp,
+    PointLamp,
+    SkyLamp,
+    SpotLamp,
+)
 from andon.lamps.areas import AreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.lamps.distributions import spot_coefficients
+from andon.lamps.intensity import luminaire_from_world
 
 __all__ = [
     "DIRECT_RECORD",
@@ -46,8 +55,8 @@ LAMP_RECORD = HostStruct(
         # spot, directional: where the light travels; hemisphere: up; disk: normal
         ("axis", "vec3f"),
         ("cone_offset", "f32"),
-        # planar shadow maps: axes of the map; hemisphere: `right` is the ground's lux; tube: the
-        # other end
+        # planar shadow maps: axes of the map; luminaire: C = 0 and C = 90; hemisphere: `right` is
+        # the ground's lux; tube: the other end
         ("right", "vec3f"),
         ("half_width", "f32"),  # tangent of the half-angle, or metres
         ("down", "vec3f"),
@@ -133,6 +142,8 @@ def form_of(lamp: Lamp, /) -> str:
         case SpotLamp():
             wide = lamp.outer_radians > WIDE_SPOT_RADIANS or is_exact(lamp)
             return "wide_spot" if wide else "spot"
+        case GoniometricLamp():
+            return "goniometric"
         case PointLamp():
             return "point"
         case DirectionalLamp():
@@ -187,6 +198,10 @@ def _light(lamp: Lamp) -> dict[str, Any]:
             scale, offset = spot_coefficients(lamp.inner_radians, lamp.outer_radians)
             cone = {"axis": lamp.direction, "cone_scale": scale, "cone_offset": offset}
             return {"position": lamp.position_m, "light": lamp.intensity_cd, **cone}
+        case GoniometricLamp():
+            right, _, up = luminaire_from_world(lamp)
+            axes = {"axis": -up, "right": right, "down": np.cross(right, -up)}
+            return {"position": lamp.position_m, "light": lamp.intensity_cd, **axes}
         case PointLamp():
             return {"position": lamp.position_m, "light": lamp.intensity_cd}
         case DirectionalLamp():

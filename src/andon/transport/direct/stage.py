@@ -11,6 +11,7 @@ from andon.gpu.textures import uniform_buffer, write_buffer
 from andon.lamps import Lamp
 from andon.transport.direct.area_buffers import AreaBuffers
 from andon.transport.direct.casters import Casters
+from andon.transport.direct.luminaire_tables import LuminaireTables
 from andon.transport.direct.records import (
     DIRECT_RECORD,
     LAMP_RECORD,
@@ -58,12 +59,14 @@ class DirectStage:
         self.maps = ShadowMaps(gpu, self.casters, lamps)
         self.soft = SoftMaps(gpu, self.casters, lamps, NEAR_M)
         self.areas = AreaBuffers(gpu, lamps)
+        luminaires = LuminaireTables(gpu, lamps)
         code = sum_of_lamps(
             lamps,
             bodies,
             layers=self.maps.layers,
             samples=self.soft.firsts,
             edges=self.areas.edges,
+            tables=luminaires.tables,
             map_size=self.maps.size,
             soft_map_size=self.soft.size,
             triangles=len(self.casters.triangles),
@@ -82,6 +85,7 @@ class DirectStage:
                 5: ("float array", self.soft.paraboloids.view),
                 6: ("storage", self.areas.samples_buffer),
                 7: ("storage", self.areas.edges_buffer),
+                8: ("storage", luminaires.buffer),
             },
             "direct",
         )

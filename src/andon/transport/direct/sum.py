@@ -18,6 +18,7 @@ def sum_of_lamps(
     layers: Mapping[str, int],
     samples: Mapping[str, int],
     edges: Mapping[str, tuple[int, int]],
+    tables: Mapping[str, tuple[int, int, int]],
     map_size: int,
     soft_map_size: int,
     triangles: int,
@@ -29,6 +30,7 @@ def sum_of_lamps(
     bodies : names of the luminous bodies; number 0 in the shader is nobody.
     layers, samples : lamp name → first layer of its shadow map, or first of its sample points.
     edges : lamp name → first and count of the edges of a polygon or mesh lamp.
+    tables : lamp name → first value, rows and columns of a luminaire's distribution.
     triangles : how many cast shadows.
     """
     lines = [
@@ -42,16 +44,24 @@ def sum_of_lamps(
         if isinstance(lamp, AreaLamp):
             term = _area_term(number, lamp, bodies, samples, edges)
         else:
-            term = _term(number, lamp, layers)
+            term = _term(number, lamp, layers, tables)
         lines.append(f"  total += {term};")
     return "\n".join([*lines, "  return total;", "}"])
 
 
-def _term(number: int, lamp: Lamp, layers: Mapping[str, int]) -> str:
+def _term(
+    number: int,
+    lamp: Lamp,
+    layers: Mapping[str, int],
+    tables: Mapping[str, tuple[int, int, int]],
+) -> str:
     form = form_of(lamp)
     if form == "hemisphere":
         return f"hemisphere_illuminance({number}, normal)"
-    return f"{form}_illuminance({number}, {layers.get(lamp.name, -1)}, position, normal, bias)"
+    layer = f"{layers.get(lamp.name, -1)}"
+    if form == "goniometric":
+        layer += ", {}, {}, {}".format(*tables[lamp.name])
+    return f"{form}_illuminance({number}, {layer}, position, normal, bias)"
 
 
 def _area_term(

@@ -29,20 +29,23 @@ fn tube_illuminance(lamp: i32, position: vec3f, normal: vec3f) -> vec3f {
     * tube_factor(record.position - position, record.right - position, normal, record.radius_m);
 }
 
-// Light of one side of an edge, if the receiver is in front of it.
-fn side_light(plane: vec4f, light: vec3f, position: vec3f) -> vec3f {
-  return select(vec3f(0.0), light, dot(plane.xyz, position) + plane.w > 0.0);
+// The receiver's height above the plane of a facet in w.
+fn seen_from(plane: vec4f, position: vec3f) -> vec4f {
+  return vec4f(plane.xyz, dot(plane.xyz, position) + plane.w);
 }
 
-// `count` edges from `first` on.
+// `count` edges from `first` on: each has the facet on its left and the one on its right.
 fn edges_illuminance(lamp: i32, first: i32, count: i32, position: vec3f, normal: vec3f) -> vec3f {
-  let towards = lamps[lamp].position - position;
+  let towards = mesh_towards(lamps[lamp].position - position, normal);
   var total = vec3f(0.0);
   for (var i = 0; i < count; i++) {
     let edge = edges[first + i];
-    let light = side_light(edge.left_plane, edge.left_light, position)
-              - side_light(edge.right_plane, edge.right_light, position);
-    total += light * edge_factor(edge.start - position, edge.end - position, normal, towards);
+    let left = seen_from(edge.left_plane, position);
+    let right = seen_from(edge.right_plane, position);
+    let share = facet_edge_factor(
+      edge.start - position, edge.end - position, left, right, normal, towards,
+    );
+    total += edge.left_light * share.x - edge.right_light * share.y;
   }
   return max(total, vec3f(0.0));
 }

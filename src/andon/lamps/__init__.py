@@ -13,6 +13,7 @@ spot            glTF's cone                    Phong's cosⁿ: never ends, no se
 flux            integral of the actual cone    the "4π" or "π" that engines assume
 colour          keeps the photometric value    RGB × intensity, where blue means darker
 colour temp.    Planck's law, one rule         a fit with a seam between two families
+shells          area lamps, energy balanced    one point lamp of t·I (kept as a mode)
 =============== ============================== ==========================================
 
 Sources: KHR_lights_punctual (Khronos); ISO/CIE 11664-1; ITU-R BT.709-6.
@@ -23,6 +24,7 @@ from __future__ import annotations
 from andon.lamps.areas import AreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.lamps.bodies import Body
 from andon.lamps.colour import rgb_factors
+from andon.lamps.drawn import body_of
 from andon.lamps.kinds import AnyAreaLamp, Lamp
 from andon.lamps.model import (
     DirectionalLamp,
@@ -33,17 +35,30 @@ from andon.lamps.model import (
     SpotLamp,
 )
 from andon.lamps.parse import parse_lamp_option
-from andon.lamps.resolve import resolve_lamps
+from andon.lamps.resolve import resolve_bodies, resolve_lamps
+from andon.lamps.shells import Shell, expand
 
 __all__ = [
+    "AnyAreaLamp",
+    "AreaLamp",
+    "Body",
     "DirectionalLamp",
+    "DiskLamp",
     "HemisphereLamp",
     "Lamp",
+    "MeshLamp",
     "PointLamp",
+    "PolygonLamp",
     "Shadow",
+    "Shell",
     "SkyLamp",
+    "SphereLamp",
     "SpotLamp",
+    "TubeLamp",
+    "body_of",
+    "expand",
     "parse_lamp_option",
+    "resolve_bodies",
     "resolve_lamps",
     "rgb_factors",
 ]

@@ -128,4 +128,3 @@ class HemisphereLamp:
     up: Float
     sky_illuminance_lux: Float
     ground_illuminance_lux: Float
-

@@ -132,9 +132,7 @@ def _hidden(lamp: PointLamp, what: str, intensity_cd: Float, groups: Iterable[st
     return replace(lamp, name=f"{lamp.name}: {what}", intensity_cd=intensity_cd, shadow=shadow)
 
 
-def _openings(
-    lamp: PointLamp, form: Form, solution: Solution, groups: Iterable[str]
-) -> list[Lamp]:
+def _openings(lamp: PointLamp, form: Form, solution: Solution, groups: Iterable[str]) -> list[Lamp]:
     if form.has_gaps:
         everywhere = PointLamp(lamp.name, lamp.position_m, lamp.intensity_cd, lamp.shadow)
         gap_cd = solution.gap_cd * lamp.intensity_cd

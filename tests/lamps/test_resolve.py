@@ -104,35 +104,6 @@ def test_motion_and_order():
 
 
 NOT_YET = [
-    ({"kind": "sphere", "position": [0, 0, 0], "radius_m": 1, "flux_lm": 1}, "kind 'sphere'"),
-    ({"kind": "mesh", "mesh": "a.glb", "luminance_cd_m2": 1}, "kind 'mesh'"),
-    ({"kind": "tube", "ends": [[0, 0, 0], [1, 0, 0]], "radius_m": 1, "flux_lm": 1}, "kind 'tube'"),
-    (
-        {"kind": "polygon", "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "flux_lm": 1},
-        "kind 'polygon'",
-    ),
-    (
-        {
-            "kind": "disk",
-            "position": [0, 0, 0],
-            "direction": [0, 1, 0],
-            "radius_m": 1,
-            "flux_lm": 1,
-        },
-        "kind 'disk'",
-    ),
-    (
-        {
-            "kind": "rectangle",
-            "position": [0, 0, 0],
-            "direction": [0, 1, 0],
-            "width_m": 1,
-            "height_m": 1,
-            "flux_lm": 1,
-        },
-        "kind 'rectangle'",
-    ),
-    (POINT | {"shell": {"radius_m": 0.1}}, "shell"),
     (POINT | {"flicker": {}}, "flicker"),
     (POINT | {"path": "way.csv"}, "path"),
     (

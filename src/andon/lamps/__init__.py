@@ -14,6 +14,7 @@ flux            integral of the actual cone    the "4π" or "π" that engines as
 colour          keeps the photometric value    RGB × intensity, where blue means darker
 colour temp.    Planck's law, one rule         a fit with a seam between two families
 luminaire       the file's candela, bilinear   smoothing, or a cone fitted to them
+shells          area lamps, energy balanced    one point lamp of t·I (kept as a mode)
 =============== ============================== ==========================================
 
 Sources: KHR_lights_punctual (Khronos); ISO/CIE 11664-1; ITU-R BT.709-6.
@@ -24,6 +25,7 @@ from __future__ import annotations
 from andon.lamps.areas import AreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.lamps.bodies import Body
 from andon.lamps.colour import rgb_factors
+from andon.lamps.drawn import body_of
 from andon.lamps.intensity import intensity_cd
 from andon.lamps.kinds import AnyAreaLamp, Lamp
 from andon.lamps.model import (
@@ -36,7 +38,8 @@ from andon.lamps.model import (
     SpotLamp,
 )
 from andon.lamps.parse import parse_lamp_option
-from andon.lamps.resolve import resolve_lamps
+from andon.lamps.resolve import resolve_bodies, resolve_lamps
+from andon.lamps.shells import Shell, expand
 
 __all__ = [
     "AnyAreaLamp",
@@ -51,12 +54,16 @@ __all__ = [
     "PointLamp",
     "PolygonLamp",
     "Shadow",
+    "Shell",
     "SkyLamp",
     "SphereLamp",
     "SpotLamp",
     "TubeLamp",
+    "body_of",
+    "expand",
     "intensity_cd",
     "parse_lamp_option",
+    "resolve_bodies",
     "resolve_lamps",
     "rgb_factors",
 ]

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.photometry import Distribution, read_photometry
-from andon.lamps.colour import factors_from_rgb, rgb_factors
+from andon.lamps.bodies import Body
+from andon.lamps.colour import factors_from_rgb
 from andon.lamps.distributions import (
     POINT_SOLID_ANGLE_SR,
     intensity_cd_from_flux,
@@ -29,6 +30,8 @@ from andon.lamps.model import (
     SkyLamp,
     SpotLamp,
 )
+from andon.lamps.resolve_areas import AREA_KINDS, area_body, area_lamp, in_shell
+from andon.lamps.tables import colour_of, unit
 
 if TYPE_CHECKING:  # scene imports pydantic; lamps built in Python do not need it
     from andon.scene import Scene
@@ -41,9 +44,9 @@ if TYPE_CHECKING:  # scene imports pydantic; lamps built in Python do not need i
         SkyTable,
         SpotTable,
     )
-    from andon.scene.lamp_base import LampTable, Shadowing
+    from andon.scene.lamp_base import Shadowing
 
-__all__ = ["resolve_lamps"]
+__all__ = ["resolve_bodies", "resolve_lamps"]
 
 Float = NDArray[np.float64]
 
@@ -51,30 +54,88 @@ Float = NDArray[np.float64]
 def resolve_lamps(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
     """The lamps of a scene at one moment, in the order of the file.
 
-    Raises `InputError` for what the schema has and this version does not render: an area lamp is
-    never silently replaced by a point.
+    A lamp in a shell is several: see `andon.lamps.shells`. Raises `InputError` for what the
+    schema has and this version does not render.
     """
     resolved: list[Lamp] = []
-    for index, table in enumerate(scene.at(time_seconds).lamp):
+    for place, table, groups in _tables(scene, time_seconds):
+        with np.errstate(over="ignore"):  # what overflows is refused below
+            if table.kind in AREA_KINDS:
+                lamps: tuple[Lamp, ...] = (area_lamp(scene, place, table),)
+            else:
+                lamps = (_lamp(scene, place, table),)
+            if isinstance(lamps[0], PointLamp) and table.shell is not None:
+                lamps, _ = in_shell(scene, place, lamps[0], table.shell, groups)
+        for lamp in lamps:
+            light = [getattr(lamp, key, None) for key in _LIGHT]
+            if not all(np.isfinite(values).all() for values in light if values is not None):
+                raise InputError("is too large to compute with", file=scene.file, field=place)
+        resolved += lamps
+    _check_names(scene, resolved)
+    return tuple(resolved)
+
+
+def resolve_bodies(scene: Scene, time_seconds: float) -> tuple[Body, ...]:
+    """What is seen of the lamps of a scene at one moment: shells and drawn areas.
+
+    In the order of the file, without those that are not drawn. Raises `InputError` as
+    `resolve_lamps` does.
+    """
+    bodies: list[Body] = []
+    for place, table, groups in _tables(scene, time_seconds):
+        if table.kind in AREA_KINDS and table.drawn:
+            lamp = area_lamp(scene, place, table)
+            bodies.append(area_body(scene, place, table, lamp))
+        elif getattr(table, "shell", None) is not None:
+            lamp = cast(PointLamp, _lamp(scene, place, table))
+            bodies.append(in_shell(scene, place, lamp, table.shell, groups)[1])
+    return tuple(bodies)
+
+
+def _lamp(scene: Scene, place: str, table: Any) -> Lamp:
+    if table.kind == "ies":
+        return _luminaire(scene, place, table)
+    return _BUILDERS[table.kind](table)
+
+
+# Caster groups that are not bodies; see `Shadow.through`.
+GROUPS = ("real", "objects")
+
+
+def _tables(scene: Scene, time_seconds: float) -> Iterator[tuple[str, Any, frozenset[str]]]:
+    """Place, table and the caster groups of all bodies, for every lamp at one moment."""
+    tables = scene.at(time_seconds).lamp
+    groups = frozenset(table.name for table in tables)
+    for index, table in enumerate(tables):
         place = f"lamp[{index}]"
         _refuse_later(scene, place, table)
-        with np.errstate(over="ignore"):  # what overflows is refused below
-            lamp = (
-                _luminaire(scene, place, table)
-                if table.kind == "ies"
-                else _BUILDERS[table.kind](table)
+        has_body = table.kind in AREA_KINDS or getattr(table, "shell", None) is not None
+        if has_body and table.name in GROUPS:
+            raise InputError(
+                f"{table.name!r} already names what is not a lamp",
+                file=scene.file,
+                field=f"{place}.name",
+                remedy="choose another name",
             )
-        light = [getattr(lamp, key, 0.0) for key in _LIGHT]
-        if not all(np.isfinite(values).all() for values in light):
-            raise InputError("is too large to compute with", file=scene.file, field=place)
-        resolved.append(lamp)
-    return tuple(resolved)
+        yield place, table, groups
+
+
+def _check_names(scene: Scene, lamps: list[Lamp]) -> None:
+    """Lamps of a shell are named after it, which a file may have done before."""
+    names = [lamp.name for lamp in lamps]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(
+            f"the name {twice!r} is taken by a part of another lamp's shell",
+            file=scene.file,
+            field="lamp",
+            remedy="choose another name",
+        )
 
 
 def _refuse_later(scene: Scene, place: str, table: AnyLamp) -> None:
     """Raise `InputError` if the lamp is of a kind, or has a key, that is not rendered yet."""
-    faults = {"kind": _INSTEAD.get(table.kind)}
-    faults |= {key: remedy for key, remedy in _LATER.items() if getattr(table, key, None)}
+    faults = {key: remedy for key, remedy in _LATER.items() if getattr(table, key, None)}
     if table.transport != "direct":
         faults["transport"] = "use 'direct'"
     for key, remedy in faults.items():
@@ -89,44 +150,20 @@ def _refuse_later(scene: Scene, place: str, table: AnyLamp) -> None:
             )
 
 
-_POINT_INSTEAD = "use kind 'point' with the same flux_lm and a visible_radius_m"
-_FLAT_INSTEAD = "use kind 'spot' with outer_degrees = 90"
-_INSTEAD = {
-    "sphere": _POINT_INSTEAD,
-    "disk": _FLAT_INSTEAD,
-    "rectangle": _FLAT_INSTEAD,
-    "tube": _POINT_INSTEAD,
-    "polygon": _FLAT_INSTEAD,
-    "mesh": _POINT_INSTEAD,
-}
 # What can overflow: a huge flux in a narrow cone, or a colour far from white.
 _LIGHT = (
     "intensity_cd",
     "illuminance_lux",
     "sky_illuminance_lux",
     "ground_illuminance_lux",
+    "luminance_cd_m2",
+    "facet_luminance_cd_m2",
 )
 # Keys whose meaning would be lost if they were ignored.
 _LATER = {
-    "shell": "use transmittance × intensity_cd, and the shell's radius as visible_radius_m",
     "flicker": "use [[lamp.key]]",
     "angular_diameter_degrees": "use 0, a point at infinity",
 }
-
-
-def _unit(direction: tuple[float, float, float]) -> Float:
-    vector = np.array(direction, dtype=np.float64)
-    vector /= np.abs(vector).max()  # first, so that squares neither overflow nor vanish
-    return vector / np.linalg.norm(vector)
-
-
-def _colour(table: LampTable) -> Float:
-    return rgb_factors(
-        chromaticity_xy=table.chromaticity_xy,
-        temperature_k=table.temperature_k,
-        daylight=table.daylight,
-        rgb=table.rgb,
-    )
 
 
 def _shadow(table: Shadowing) -> Shadow | None:
@@ -137,7 +174,7 @@ def _intensity(table: PointTable | SpotTable, solid_angle_sr: float) -> Float:
     intensity_cd = table.intensity_cd
     if intensity_cd is None:
         intensity_cd = intensity_cd_from_flux(table.flux_lm or 0.0, solid_angle_sr)
-    return intensity_cd * _colour(table)
+    return intensity_cd * colour_of(table)
 
 
 def _point(table: PointTable) -> PointLamp:
@@ -158,7 +195,7 @@ def _spot(table: SpotTable) -> SpotLamp:
         _intensity(table, spot_solid_angle_sr(inner, outer)),
         _shadow(table),
         table.visible_radius_m,
-        _unit(table.direction),
+        unit(table.direction),
         float(inner),
         float(outer),
     )
@@ -166,7 +203,7 @@ def _spot(table: SpotTable) -> SpotLamp:
 
 def _luminaire(scene: Scene, place: str, table: IesTable) -> GoniometricLamp:
     distribution = _read(scene.path(table.file, f"{place}.file"))
-    direction = _unit(table.direction)
+    direction = unit(table.direction)
     peak = table.intensity_cd
     if peak is None and table.flux_lm is not None:
         peak = table.flux_lm / flux_lm(distribution) * maximum_cd(distribution)
@@ -177,7 +214,7 @@ def _luminaire(scene: Scene, place: str, table: IesTable) -> GoniometricLamp:
     return GoniometricLamp(
         table.name,
         np.array(table.position),
-        peak * _colour(table),
+        peak * colour_of(table),
         _shadow(table),
         table.visible_radius_m,
         direction=direction,
@@ -219,20 +256,20 @@ def _read_once(path: Path, _modified: int, _bytes: int) -> Distribution:
 
 
 def _directional(table: DirectionalTable) -> DirectionalLamp:
-    lux = (table.illuminance_lux or 0.0) * _colour(table)
-    return DirectionalLamp(table.name, _unit(table.direction), lux, _shadow(table))
+    lux = (table.illuminance_lux or 0.0) * colour_of(table)
+    return DirectionalLamp(table.name, unit(table.direction), lux, _shadow(table))
 
 
 def _sky(table: SkyTable) -> SkyLamp:
-    return SkyLamp(table.name, _unit(table.up), (table.illuminance_lux or 0.0) * _colour(table))
+    return SkyLamp(table.name, unit(table.up), (table.illuminance_lux or 0.0) * colour_of(table))
 
 
 def _hemisphere(table: HemisphereTable) -> HemisphereLamp:
-    sky = _colour(table)
+    sky = colour_of(table)
     ground = sky if table.ground_rgb is None else factors_from_rgb(np.array(table.ground_rgb))
     return HemisphereLamp(
         table.name,
-        _unit(table.up),
+        unit(table.up),
         (table.illuminance_lux or 0.0) * sky,
         table.ground_illuminance_lux * ground,
     )

@@ -37,7 +37,7 @@ def icosphere(cuts: int, /) -> Geometry:
         for k in range(j + 1, 12)
         if near[i, j] and near[j, k] and near[i, k]
     ]
-    corners = points[np.array(faces)]
+    corners: Float = points[np.array(faces)]
     corners /= np.linalg.norm(corners, axis=2, keepdims=True)
     inwards = np.linalg.det(corners) < 0
     corners[inwards] = corners[inwards][:, ::-1]
@@ -45,7 +45,8 @@ def icosphere(cuts: int, /) -> Geometry:
         corners = quarters(corners)
         corners /= np.linalg.norm(corners, axis=2, keepdims=True)
     # Middles of a side come out the same from both triangles, up to the sign of zero.
-    found, index = np.unique(np.round(corners.reshape(-1, 3), 12), axis=0, return_inverse=True)
+    rounded = np.asarray(np.round(corners, 12), np.float64).reshape(-1, 3)
+    found, index = np.unique(rounded, axis=0, return_inverse=True)
     unit = found / np.linalg.norm(found, axis=1, keepdims=True)
     return Geometry(unit, index.reshape(-1, 3).astype(np.int32), unit)
 

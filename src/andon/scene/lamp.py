@@ -13,7 +13,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from andon.scene.base import NonNegative, Positive, Reference, Vector, refusal
 from andon.scene.geometry import Direction
-from andon.scene.lamp_base import LampTable, Shadowing, Shelled
+from andon.scene.lamp_base import LampTable, Shadowing, ShadowMapSize, Shelled
 
 __all__ = [
     "LAMP_KINDS",
@@ -103,20 +103,29 @@ class _Area(LampTable, Shadowing):
 
     intensity_cd: NonNegative | None = Field(
         default=None,
-        description="Luminous intensity along the normal (sphere, tube: broadside) in cd.",
+        description="Luminous intensity in cd: along the normal; sphere, tube: broadside; mesh: "
+        "mean over all directions.",
     )
-    flux_lm: NonNegative | None = Field(default=None, description=_FLUX)
+    flux_lm: NonNegative | None = Field(
+        default=None,
+        description="Luminous flux in lm; of both sides, if two_sided.",
+    )
     luminance_cd_m2: NonNegative | None = Field(
         default=None,
         description="Luminance of the area in cd/m², equal to all sides.",
     )
-    texture: Reference | None = Field(
-        default=None,
-        description="Picture on the area, linear; its mean has the stated luminance.",
-    )
     drawn: bool = Field(
         default=True,
-        description="The area is seen in the picture.",
+        description="The area is seen in the picture, and casts shadows.",
+    )
+    shadow_map_size: ShadowMapSize = Field(
+        default=256,
+        description="Texels along a side of each shadow map, 16…8192.",
+    )
+    shadow_samples: Annotated[int, Field(ge=1, le=64)] = Field(
+        default=16,
+        description="Points on the area from which its shadow is looked at, 1…64; the penumbra is "
+        "their mean.",
     )
 
 
@@ -156,6 +165,10 @@ class RectangleTable(_Area):
     two_sided: bool = Field(
         default=False,
         description="Emits from both sides.",
+    )
+    texture: Reference | None = Field(
+        default=None,
+        description="Picture on the area; its mean has the stated luminance.",
     )
 
 
@@ -202,7 +215,10 @@ class MeshTable(_Area):
         default=(0.0, 0.0, 0.0),
         description="Offset of the mesh in metres, world.",
     )
-    mesh: Reference = Field(description="Mesh file; every triangle emits outwards.")
+    mesh: Reference = Field(
+        description="Mesh file; every triangle emits to the side on which it runs "
+        "counter-clockwise."
+    )
 
 
 class DirectionalTable(LampTable, Shadowing):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -62,24 +62,34 @@ class LampKey(Table):
 
 
 class Shell(Table):
-    """The translucent shell of a luminous body: lit from inside, it emits outside."""
+    """The translucent shell of a luminous body: lit from inside, it emits outside.
+
+    It moves with its lamp. The lamp is inside it.
+    """
 
     radius_m: Positive | None = Field(
         default=None,
-        description="Radius of a spherical shell in metres.",
+        description="Radius in metres of a spherical shell around the lamp.",
     )
     mesh: Reference | None = Field(
         default=None,
-        description="Mesh file of a shell of any other form.",
+        description="Mesh file of a shell of any other form: one layer of triangles; its origin "
+        "is where the lamp is. What its rims leave free are openings.",
     )
     transmittance: FractionTriple = Field(
         default=(0.5, 0.5, 0.5),
-        description="Net diffuse transmittance t in [0, 1], interreflection included; one number "
-        "or three channels.",
+        description="Net diffuse transmittance t in [0, 1]: share of the light that meets the "
+        "shell and leaves through it, interreflection included; one number or three channels.",
     )
     absorptance: Fraction = Field(
         default=0.0,
-        description="Share of the light that an open shell takes, [0, 1]; 1 − t at most.",
+        description="Share of that light that an open shell takes, [0, 1]; 1 − t at most. The "
+        "rest leaves through the openings; a closed shell takes all that it does not let through.",
+    )
+    mode: Literal["exact", "paper"] = Field(
+        default="exact",
+        description="exact: area lamps and an energy balance; paper: a point lamp of t × the "
+        "intensity shines through the shell, and what is left through its openings.",
     )
 
     @model_validator(mode="after")

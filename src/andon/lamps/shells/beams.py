@@ -109,9 +109,9 @@ def beam_flux(corners: Float, beam: Beam, /) -> Float:
 def _caps(corners: Float) -> tuple[Float, Float]:
     """Centre (n, 3) and angular radius (n,) of caps around triangles, seen from the origin."""
     length = np.linalg.norm(corners, axis=-1, keepdims=True)
-    directions = corners / np.maximum(length, np.finfo(float).tiny)
-    middle = directions.mean(axis=1)
+    directions: Float = corners / np.maximum(length, np.finfo(float).tiny)
+    middle: Float = directions.mean(axis=1)
     size = np.linalg.norm(middle, axis=-1, keepdims=True)
-    centre = np.where(size > 1e-12, middle / np.maximum(size, 1e-12), directions[:, 0])
+    centre: Float = np.where(size > 1e-12, middle / np.maximum(size, 1e-12), directions[:, 0])
     cosine = np.einsum("nij,nj->ni", directions, centre).min(axis=1)
     return centre, np.arccos(np.clip(cosine, -1, 1))

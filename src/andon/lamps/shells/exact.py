@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,10 @@ from andon.lamps.shells.radiosity import Balance, balance
 __all__ = ["Solution", "solve_shell"]
 
 Float = NDArray[np.float64]
+
+# A cone that falls between the vertices of the drawn body, up to this share of its flux, is shown
+# as wide as the facets that it meets.
+SEEN_SHARE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +86,11 @@ def _incident(form: Form, beam: Beam) -> tuple[float, Float]:
     if form.has_gaps:
         met = float(np.maximum(beam_flux(form.corners, beam), 0).sum())
     else:
-        met = beam.flux_lm - float(beam_flux(form.covers, beam).sum())
-    met = min(max(met, 0.0), beam.flux_lm)
+        # Both sums have the same error, if any: together they are the whole beam.
+        past = max(float(beam_flux(form.covers, beam).sum()), 0.0)
+        hit = max(float(beam_flux(form.corners, beam).sum()), 0.0)
+        met = beam.flux_lm * hit / (hit + past)
+    met = min(met, beam.flux_lm)
     flux = np.maximum(beam_flux(form.facets, beam), 0)
     if met > 0 and not flux.any():  # a beam through a crack that only the fine mesh does not have
         flux = np.maximum(solid_angles(form.facets), 0)
@@ -102,7 +110,7 @@ def _shares(shell: Shell) -> tuple[Float, Float]:
     inside = np.concatenate([form.facets, *lids])[:, ::-1]
     shares = enclosure_factors(inside, closed=not form.has_gaps)[:count]
     ends = np.cumsum([count, *(len(lid) for lid in lids)])
-    to_lids = [shares[:, a:b].sum(axis=1) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    to_lids = [shares[:, a:b].sum(axis=1) for a, b in pairwise(ends.tolist())]
     return shares[:, :count], np.stack(to_lids, axis=1) if lids else np.zeros((count, 0))
 
 
@@ -136,12 +144,12 @@ def _at_vertices(
     area = triangle_areas(form.facets)
     weights = triangle_areas(drawn.positions[drawn.triangles])
     outside, inside = np.zeros((2, len(direct), 3))
-    spreads = spread(
-        drawn.positions,
-        vertex_normals(drawn),
-        form.facets,
-        np.stack([(b.received - incident) * met_lm / area for b in balances], axis=1),
-    )
+    normals = vertex_normals(drawn)
+    facet_lux = [(b.received - incident) * met_lm / area for b in balances]
+    spreads = spread(drawn.positions, normals, form.facets, np.stack(facet_lux, axis=1))
+    if weights @ direct[drawn.triangles].mean(axis=1) < SEEN_SHARE * met_lm:
+        facet_lux = (incident * met_lm / area)[:, None]
+        direct = spread(drawn.positions, normals, form.facets, facet_lux)[:, 0]
     for channel, b in enumerate(balances):
         lux = direct + np.maximum(spreads[:, channel], 0)
         total = weights @ lux[drawn.triangles].mean(axis=1) * b.passes

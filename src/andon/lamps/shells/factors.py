@@ -26,7 +26,7 @@ def point_factors(points: Float, normals: Float, corners: Float, /) -> Float:
     """
     total = np.zeros((len(points), len(corners)))
     relative = corners[None] - points[:, None, None]
-    height = np.einsum("ptki,pi->ptk", relative, normals)
+    height = (relative * normals[:, None, None]).sum(axis=-1)
     falls = np.zeros((*total.shape, 3))
     rises = np.zeros((*total.shape, 3))
     for k in range(3):
@@ -46,10 +46,13 @@ def point_factors(points: Float, normals: Float, corners: Float, /) -> Float:
 
 def _edge(a: Float, b: Float, normals: Float) -> Float:
     """Angle of an edge seen from the origin, times n · its plane's normal; 0 if seen end on."""
-    across = np.cross(a, b)
-    length = np.linalg.norm(across, axis=-1)
-    angle = np.arctan2(length, np.einsum("pti,pti->pt", a, b))
-    facing = np.einsum("pti,pi->pt", across, normals)
+    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
+    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    length = np.sqrt(x * x + y * y + z * z)
+    angle = np.arctan2(length, ax * bx + ay * by + az * bz)
+    n = normals[:, None]
+    facing = x * n[..., 0] + y * n[..., 1] + z * n[..., 2]
     return np.divide(angle * facing, length, out=np.zeros_like(angle), where=length > 0)
 
 

@@ -27,6 +27,7 @@ MAX_FACETS = 96
 MAX_LIDS = 8
 # A rim that spans less than this share of the shell is a seam that was not closed, not an opening.
 SEAM = 1e-4
+IN_PLANE = 1e-6
 # How often the shell may cover a direction twice before it is no single layer any more.
 MAX_OVERLAP = 0.05
 # Triangles of the drawn shell are cut until none is seen from the lamp under more than this.
@@ -109,10 +110,12 @@ def _openings(layer: Layer) -> list[Float]:
 
 def _around_lamp(layer: Layer, loops: list[Float]) -> tuple[Layer, list[Float]]:
     """One part, turned outwards. Closed by its lids it goes round the lamp once, or not at all."""
-    whole = solid_angles(layer.corners).sum() + sum(solid_angles(fan(lp)).sum() for lp in loops)
-    turns = whole / (4 * np.pi)
-    if abs(abs(turns) - 1) > 0.25:
-        _refuse_outside()
+    open_sr = [float(solid_angles(fan(loop)).sum()) for loop in loops]
+    turns = (float(solid_angles(layer.corners).sum()) + sum(open_sr)) / (4 * np.pi)
+    # In the plane of an opening rounding decides on which side of it the lamp is.
+    widest = max(map(abs, open_sr), default=0.0) / (2 * np.pi)
+    if abs(abs(turns) - 1) > 0.25 or abs(widest - 1) < IN_PLANE:
+        raise _outside()
     if turns < 0:
         layer = layer.turned(np.ones(len(layer.triangles), np.bool_))
         loops = [loop[::-1] for loop in loops]
@@ -126,7 +129,7 @@ def _outwards(layer: Layer) -> tuple[Layer, bool]:
     layer = layer.turned((seen < 0)[layer.part])
     covered = float(np.abs(seen).sum())
     if covered < 1e-6:
-        _refuse_outside()
+        raise _outside()
     _check_overlap(layer, min(covered, 4 * np.pi))
     return layer, covered < 4 * np.pi * (1 - SEAM)
 
@@ -142,8 +145,8 @@ def _check_overlap(layer: Layer, covered: float) -> None:
         )
 
 
-def _refuse_outside() -> None:
-    raise InputError(
+def _outside() -> InputError:
+    return InputError(
         "the lamp is outside its shell, or on it",
         field=FIELD,
         remedy="the mesh's origin is where the lamp is: move the mesh around it; a shell is one "

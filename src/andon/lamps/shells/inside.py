@@ -41,9 +41,10 @@ def inside_illuminance(body: Geometry, beam: Beam, /) -> Float:
 
 
 def spread(points: Float, normals: Float, facets: Float, values: Float, /) -> Float:
-    """`values` (n, c) of facets (n, 3, 3) at `points` (p, 3): mean of the near ones that face alike.
+    """`values` (n, c) of facets (n, 3, 3) at `points` (p, 3): a mean of near ones.
 
-    Weights fall with the square of the distance beyond a facet's own size.
+    Those that face alike count most; weights fall with the fourth power of the
+    distance beyond a facet's own size.
     """
     result = np.zeros((len(points), values.shape[1]))
     if not values.any():

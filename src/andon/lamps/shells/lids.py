@@ -39,6 +39,8 @@ def flat_lid(loop: Float, /) -> Float:
     while len(flat) > MAX_CORNERS:
         before, after = np.roll(flat, 1, axis=0), np.roll(flat, -1, axis=0)
         cut_off = np.abs(np.cross(flat - before, after - before) @ normal)
-        flat = np.delete(flat, np.argmin(cut_off), axis=0)
+        # The first of equals, not the one that rounding prefers.
+        least = np.flatnonzero(cut_off <= (1 + 1e-6) * cut_off.min())[0]
+        flat = np.delete(flat, least, axis=0)
     kept = float(vector_area(flat) @ normal)
     return middle + (flat - middle) * np.sqrt(size / kept) if kept > 0 else flat

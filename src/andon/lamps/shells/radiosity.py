@@ -67,4 +67,4 @@ def balance(incident: Float, shares: Float, /, *, t: float, a: float) -> Balance
 
 def _received(incident: Float, shares: Float, reflects: float) -> Float:
     system = np.eye(len(incident)) - reflects * shares.T
-    return np.linalg.solve(system, incident)
+    return np.asarray(np.linalg.solve(system, incident), np.float64)

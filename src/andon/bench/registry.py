@@ -74,6 +74,6 @@ class BenchRow:
 
 def rows() -> tuple[BenchRow, ...]:
     """All rows, stage by stage."""
-    from andon.bench.relight import ROWS
+    from andon.bench import glow, relight
 
-    return ROWS
+    return relight.ROWS + glow.ROWS

@@ -160,6 +160,12 @@ class Glare(Table):
         default=None,
         description="Of the model glow: σ in degrees; default: as much as cie135 within 1°.",
     )
+    glow_fraction: Fraction | None = Field(
+        default=None,
+        description="Of the model glow: share of the bodies' light that is scattered, 1 as in the "
+        "paper; default: what cie135 scatters by more than minimum_angle_degrees (0.32 at 25 "
+        "years).",
+    )
     seed: Count | None = Field(
         default=None,
         description="Pattern of needles; default: from scene.seed.",
@@ -167,8 +173,9 @@ class Glare(Table):
 
     @model_validator(mode="after")
     def _check_glow(self) -> Glare:
-        if self.glow_sigma_degrees is not None and self.model != "glow":
-            raise refusal("belongs to model 'glow'", key="glow_sigma_degrees", remedy="remove it")
+        for key in ("glow_sigma_degrees", "glow_fraction"):
+            if getattr(self, key) is not None and self.model != "glow":
+                raise refusal("belongs to model 'glow'", key=key, remedy="remove it")
         return self
 
 

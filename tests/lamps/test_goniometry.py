@@ -1,8 +1,6 @@
 """Measured distributions: which way the angles run, flux, beams, the table for the GPU."""
 
-import subprocess
-from importlib.util import find_spec
-from pathlib import Path
+import importlib.util
 
 import numpy as np
 import pytest
@@ -13,6 +11,7 @@ from andon.errors import InputError
 from andon.files import Distribution, read_photometry
 from andon.lamps import goniometry
 from andon.lamps.uniform import uniform_grid
+from andon.verify.truths.luminaires import radiance_candela
 
 ANGLES_C = (np.linspace(0, 360, 25), np.linspace(0, 180, 37))
 ANGLES_B = (np.linspace(-90, 90, 37), np.linspace(-180, 180, 73))
@@ -216,31 +215,9 @@ def test_poles_of_a_real_floodlight_are_those_of_type_b(data_dir):
     assert np.ptp(lamp.candela[:, 0]) > 0
 
 
-def radiance_candela(path, folder, directions, *options):
-    """Candela of ies2rad's lamp: radiance of a small sphere × πr² × 179 lm/W."""
-    spec = find_spec("pyradiance")
-    if spec is None:
-        pytest.skip("pyradiance is not installed")
-    programs, library = Path(spec.origin).parent / "bin", Path(spec.origin).parent / "lib"
-    environment = {"RAYPATH": f"{library}:{folder}", "PATH": str(programs)}
-
-    def run(*command, text=None):
-        done = subprocess.run(
-            [str(programs / command[0]), *command[1:]],
-            cwd=folder, env=environment, input=text, capture_output=True, check=True,
-        )  # fmt: skip
-        return done.stdout
-
-    run("ies2rad", "-i", "0.05", "-t", "default", "-o", "lamp", *options, str(path))
-    # As an illum the sphere would be seen through; only its place and size are wanted here.
-    scene = (folder / "lamp.rad").read_text().replace(" illum ", " light ")
-    (folder / "lamp.rad").write_text(scene)
-    (folder / "lamp.oct").write_bytes(run("oconv", "lamp.rad"))
-    rays = np.concatenate([directions * 2, -directions], axis=1)
-    text = "\n".join(" ".join(f"{x:.9f}" for x in ray) for ray in rays).encode()
-    out = run("rtrace", "-h", "-ab", "0", "lamp.oct", text=text)
-    radiance = np.array([line.split() for line in out.decode().splitlines()], float)
-    return radiance[:, 1] * np.pi * 0.05**2 * 179
+RADIANCE = pytest.mark.skipif(
+    importlib.util.find_spec("pyradiance") is None, reason="pyradiance is not installed"
+)
 
 
 def directions_within(lamp, count=300):
@@ -251,33 +228,36 @@ def directions_within(lamp, count=300):
     return h, v
 
 
+@RADIANCE
 @pytest.mark.parametrize("name", ["cu_calc/1.IES", "cu_calc/3.IES", "cu_calc/5.IES",
                                   "cu_calc/7.IES", "tuberlin/HeadLight.ies"])  # fmt: skip
-def test_candela_beside_ies2rad(data_dir, tmp_path, name):
+def test_candela_beside_ies2rad(data_dir, name):
     path = data_dir / "ies_luminaires" / name
     lamp = read_photometry(path)
     directions = goniometry.directions_of(lamp, *directions_within(lamp))
-    theirs = radiance_candela(path, tmp_path, directions)
+    theirs = radiance_candela(path, directions)
     assert goniometry.candela(lamp, directions) == pytest.approx(
         theirs, abs=2e-4 * goniometry.maximum_cd(lamp)
     )
 
 
+@RADIANCE
 @pytest.mark.parametrize("plane", ["vertical", "horizontal"])
 @pytest.mark.parametrize("name", ["flood_2.1.IES", "flood_2.2.ies"])
-def test_floodlights_beside_ies2rad_in_their_main_planes(data_dir, tmp_path, name, plane):
+def test_floodlights_beside_ies2rad_in_their_main_planes(data_dir, name, plane):
     path = data_dir / "ies_luminaires" / "cu_calc" / name
     lamp = read_photometry(path)
     h, v = directions_within(lamp)
     h, v = (0 * h, v) if plane == "vertical" else (h, 0 * v)
     directions = goniometry.directions_of(lamp, h, v)
-    theirs = radiance_candela(path, tmp_path, directions)
+    theirs = radiance_candela(path, directions)
     assert goniometry.candela(lamp, directions) == pytest.approx(
         theirs, abs=2e-4 * goniometry.maximum_cd(lamp)
     )
     assert theirs.max() > 0.9 * goniometry.candela(lamp, directions).max() > 0
 
 
+@RADIANCE
 @pytest.mark.parametrize("first", ["IESNA91", "IESNA:LM-63-2002"])
 def test_factors_beside_ies2rad(tmp_path, first):
     """Multiplier × ballast, and the second factor for old files only; -m scales on top."""
@@ -289,7 +269,7 @@ def test_factors_beside_ies2rad(tmp_path, first):
     )
     lamp = read_photometry(path)
     directions = goniometry.directions_of(lamp, *directions_within(lamp))
-    theirs = radiance_candela(path, tmp_path, directions, "-m", "2")
+    theirs = radiance_candela(path, directions, multiplier=2)
     ours = goniometry.candela(lamp, directions)
     assert 2 * ours == pytest.approx(theirs, abs=5e-4 * goniometry.maximum_cd(lamp))
 

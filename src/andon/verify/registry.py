@@ -47,6 +47,6 @@ class Row:
 
 def rows() -> tuple[Row, ...]:
     """All rows, stage by stage."""
-    from andon.verify.rows.relight import ROWS
+    from andon.verify.rows import photometry, relight
 
-    return ROWS
+    return (*relight.ROWS, *photometry.ROWS)

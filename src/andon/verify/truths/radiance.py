@@ -51,6 +51,7 @@ __all__ = [
     "SpotSource",
     "Timing",
     "irradiance",
+    "package_folder",
     "time_picture",
     "time_view",
 ]
@@ -298,7 +299,7 @@ def _geometry_text(geometry: Geometry) -> str:
 
 
 def _run(program: str, arguments: list[str], feed: bytes, limit: float) -> bytes:
-    folder = _package_folder()
+    folder = package_folder()
     path = shutil.which(program, path=str(folder / "bin"))
     if path is None:
         raise MachineError(
@@ -323,7 +324,7 @@ def _run(program: str, arguments: list[str], feed: bytes, limit: float) -> bytes
 _INSTALL_REMEDY = "install it with: pip install 'andon[radiance]'"
 
 
-def _package_folder() -> Path:
+def package_folder() -> Path:
     """Where the `pyradiance` wheel lies; it is found, not imported (0.3 s, and not needed)."""
     spec = find_spec("pyradiance")
     if spec is None or spec.origin is None:

@@ -2,8 +2,8 @@
 
 ::
 
-    capture ─CameraFrame▶ see ─Surface▶ illuminate ─Illuminance▶ compose ─Luminance▶ encode
-                                                                            └▶ DisplayImage
+    capture ─CameraFrame▶ see ─Surface▶ illuminate ─Illuminance▶ compose ─Luminance▶ glow
+                                                      DisplayImage ◀─ encode ◀─Luminance─┘
 
 One frame, one or two views: what does not depend on the eye (geometry, lamps, shadow maps) is
 shared, the rest is done per view.
@@ -86,6 +86,8 @@ class Frame:
     luminance : what leaves towards the camera, cd/m².
     image : 8-bit codes for the screen.
     report : engine, times, holes and what else is worth knowing.
+    bodies : luminance of luminous bodies and visible lamps alone, cd/m²; None without any.
+    glow : the same as the glow filters it; None without a glow.
     """
 
     captured: CameraFrame
@@ -94,6 +96,8 @@ class Frame:
     luminance: Luminance
     image: DisplayImage
     report: Report
+    bodies: Luminance | None = None
+    glow: Luminance | None = None
 
 
 class Renderer:
@@ -145,9 +149,13 @@ class Renderer:
         seen = clock.time("surface", lambda: engine.see(frame.view.name, bodies))
         light = clock.time("direct", lambda: engine.illuminate(seen, lamps, bodies))
         luminance = clock.time("composite", lambda: engine.compose(frame, seen, light, lamps))
+        if prepared.glow is not None:
+            composed = luminance
+            luminance = clock.time("glow", lambda: engine.glow(frame, seen, composed, lamps))
         image = clock.time("display", lambda: engine.encode(frame, luminance))
         engine.finish()
         self.stage_seconds = clock.seconds
+        self._lamps = lamps
         return seen, light, luminance, image
 
     def render(self, time_seconds: float = 0.0, view: str | None = None) -> Frame:
@@ -161,8 +169,9 @@ class Renderer:
         handles = self.draw(time_seconds, view, timed=True)
         surface, illuminance, luminance, image = self._engine.read(*handles)
         captured = self.prepared.frames[self._view_name(view)]
+        bodies, filtered = self._engine.read_bodies(captured, handles[0], self._lamps)
         report = self._report(captured, surface)
-        return Frame(captured, surface, illuminance, luminance, image, report)
+        return Frame(captured, surface, illuminance, luminance, image, report, bodies, filtered)
 
     def _view_name(self, view: str | None) -> str:
         if view is None:

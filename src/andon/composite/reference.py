@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from andon.composite.model import Ambient
 from andon.lamps import Lamp, PointLamp, intensity_cd
-from andon.lamps.areas import SphereLamp
 from andon.quantities import CameraFrame, Surface
 from andon.spaces import View
 
@@ -91,9 +90,10 @@ class Disc:
 
 
 def disc_of(lamp: Lamp, eye: Float, /) -> Disc | None:
-    """The disc that `lamp` is drawn as for `eye` (3,); None for what is not drawn so."""
-    if isinstance(lamp, SphereLamp) and lamp.drawn:
-        return Disc(lamp.position_m, lamp.radius_m, lamp.luminance_cd_m2)
+    """The disc that `lamp` is drawn as for `eye` (3,); None for what is not drawn so.
+
+    Lamps with an area are drawn as the bodies that they are.
+    """
     if not isinstance(lamp, PointLamp) or lamp.visible_radius_m <= 0:
         return None
     return Disc(lamp.position_m, lamp.visible_radius_m, lamp_luminance(lamp, eye))

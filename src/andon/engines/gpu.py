@@ -11,6 +11,7 @@ from andon import gbuffer
 from andon.composite import stage as composite
 from andon.display.stage import DisplayStage
 from andon.engines.prepared import Prepared
+from andon.glow.stage import GlowStage
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import open_gpu
 from andon.gpu.passes import FullscreenPass
@@ -47,6 +48,11 @@ class _View:
         )
         self.composite.load(frame)
         self.luminance = make_texture(gpu, "rgba16float", view.width, view.height, label="light")
+        self.glow: GlowStage | None = None
+        if prepared.glow is not None:
+            alone = self.composite.lamps.alone
+            self.glow = GlowStage(gpu, alone, self.luminance, prepared.glow, view)
+            self.filtered = make_texture(gpu, alone.format, view.width, view.height, label="glow")
         self.display = DisplayStage(
             gpu, self.luminance, frame.response, prepared.exposure, frame.luminance_per_unit
         )
@@ -127,6 +133,15 @@ class GpuEngine:
         )
         return light.luminance
 
+    def glow(
+        self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, lamps: Sequence[Lamp]
+    ) -> Texture:
+        """Records the scattering of the bodies' light around them."""
+        view = self._views[frame.view.name]
+        if view.glow is not None and view.has_lamps:
+            view.glow.encode(self.encoder)
+        return luminance
+
     def encode(self, frame: CameraFrame, luminance: Texture) -> DisplayStage:
         """Records the display."""
         display = self._views[frame.view.name].display
@@ -147,7 +162,28 @@ class GpuEngine:
         light.lux.encode(self.encoder, [light.lux_map.view])
         self.finish()
         lux = np.ascontiguousarray(light.lux_map.read()[..., :3])
-        linear = luminance.read()[..., :3].astype(np.float32)
-        cd_m2 = linear * np.float32(light.frame.luminance_per_unit)
         word = self.prepared.photometry
-        return seen.read(), Illuminance(lux, word), Luminance(cd_m2, word), image.read()
+        surface = seen.read()
+        if surface.body_id is not None and light.has_lamps:
+            alone = self._cd_m2(light.composite.lamps.alone, light.frame).cd_m2
+            own = surface.body_id >= 0
+            surface.emitted_cd_m2[own] = alone[own]
+        return surface, Illuminance(lux, word), self._cd_m2(luminance, light.frame), image.read()
+
+    def read_bodies(
+        self, frame: CameraFrame, seen: GpuSurface, lamps: Sequence[Lamp]
+    ) -> tuple[Luminance | None, Luminance | None]:
+        """Luminous bodies alone, and as the glow filters them; drawn for figures, not for frames."""
+        view = self._views[frame.view.name]
+        if not view.has_lamps:
+            return None, None
+        alone = self._cd_m2(view.composite.lamps.alone, frame)
+        if view.glow is None:
+            return alone, None
+        view.glow.encode_filtered(self.encoder, view.filtered)
+        self.finish()
+        return alone, self._cd_m2(view.filtered, frame)
+
+    def _cd_m2(self, picture: Texture, frame: CameraFrame) -> Luminance:
+        linear = picture.read()[..., :3].astype(np.float32)
+        return Luminance(linear * np.float32(frame.luminance_per_unit), self.prepared.photometry)

@@ -14,8 +14,10 @@ from andon.display.model import Exposure
 from andon.errors import InputError
 from andon.files.cameras import read_camera
 from andon.files.pictures import Picture, read_picture
-from andon.lamps import Lamp, PointLamp, resolve_lamps
-from andon.lamps.bodies import Body
+from andon.glow.automatic import glow_from_table
+from andon.glow.model import Glow
+from andon.lamps import AreaLamp, Body, Lamp, PointLamp, resolve_bodies, resolve_lamps
+from andon.lamps.sources import resolve_sources
 from andon.quantities import CameraFrame, Photometry, photometric
 from andon.responses import LINEAR, SRGB, Response
 from andon.scene import Scene
@@ -28,14 +30,14 @@ from andon.transport.direct.casters import OBJECTS, REAL, Casters
 __all__ = ["Prepared", "prepare"]
 
 # Tables and keys that the schema has and this version does not draw; a frame says so.
-LATER_TABLES = ("baked", "probes", "glass", "gaze", "glare")
+LATER_TABLES = ("baked", "probes", "glass", "gaze")
 
 LATER_KEYS = {
     "surface": ("response", "reflectance_map"),
-    "ambient": ("source",),
     "capture": ("clipped_luminance_cd_m2", "depth", "pose", "gaze", "noise"),
     "atmosphere": ("mist",),
     "observer": ("age", "pigment", "pupil_mm", "glasses"),
+    "glare": ("renderer", "highlights", "halo", "needles", "adaptation"),
     "display": ("peak_luminance_cd_m2", "transmittance"),
 }
 
@@ -58,6 +60,7 @@ class Prepared:
     bodies : time in seconds → the luminous bodies of that moment; always the same names and
         triangles.
     exposure : settings of the display.
+    glow : of luminous bodies, or None.
     photometry : the word that every number carries.
     ignored : tables of the scene that this version does not draw.
     """
@@ -68,6 +71,7 @@ class Prepared:
     lamps: Callable[[float], tuple[Lamp, ...]]
     bodies: Callable[[float], tuple[Body, ...]] = nobody
     exposure: Exposure = field(default_factory=Exposure)
+    glow: Glow | None = None
     photometry: Photometry = "absolute"
     ignored: tuple[str, ...] = ()
 
@@ -97,15 +101,28 @@ def prepare(scene: Scene, /) -> Prepared:
     }
     eye = next(iter(frames.values())).view.position
     _check_lamps(scene, resolve_lamps(scene, 0.0), surface, eye)
+    virtual = _virtual_groups(scene)
     return Prepared(
         frames=frames,
         surface=surface,
         ambient=ambient,
-        lamps=lambda time_seconds: resolve_lamps(scene, time_seconds),
+        lamps=lambda time_seconds: (
+            *resolve_lamps(scene, time_seconds),
+            *resolve_sources(scene, time_seconds, virtual),
+        ),
+        bodies=lambda time_seconds: resolve_bodies(scene, time_seconds),
         exposure=_exposure(scene),
+        glow=_glow(scene),
         photometry=scene.photometry,
         ignored=_ignored(scene),
     )
+
+
+def _virtual_groups(scene: Scene) -> frozenset[str]:
+    """Caster groups that the photograph did not have: virtual objects, and bodies of lamps."""
+    bodies = [body.name for body in resolve_bodies(scene, 0.0) if body.casts_shadow]
+    casting = any(table.casts_shadow for table in scene.object)
+    return frozenset([*bodies, *([OBJECTS] if casting else [])])
 
 
 def _ignored(scene: Scene) -> tuple[str, ...]:
@@ -221,11 +238,11 @@ def _ambient(scene: Scene, views: Mapping[str, View]) -> Ambient:
             field="ambient",
             remedy="add [ambient] with illuminance_lux",
         )
-    if table.probes or table.removed:
+    if table.probes:
         raise InputError(
             "is in the schema but not rendered yet",
             file=scene.file,
-            field="ambient.probes" if table.probes else "ambient.removed",
+            field="ambient.probes",
             remedy="state ambient.illuminance_lux",
         )
     if table.map is not None:
@@ -283,13 +300,32 @@ def _exposure(scene: Scene) -> Exposure:
     return Exposure(display.exposure, display.tone)  # type: ignore[arg-type]
 
 
+def _glow(scene: Scene) -> Glow | None:
+    if scene.glare is not None and scene.glare.model != "glow":
+        raise InputError(
+            f"{scene.glare.model!r} is in the schema but not rendered yet",
+            file=scene.file,
+            field="glare.model",
+            remedy="use 'glow', or leave [glare] out",
+        )
+    try:
+        return glow_from_table(scene.glare, scene.observer)
+    except InputError as error:
+        raise InputError(
+            error.rule, file=scene.file, field=error.field, remedy=error.remedy
+        ) from error
+
+
 def _check_lamps(
     scene: Scene, lamps: tuple[Lamp, ...], surface: SurfaceModel, eye: NDArray[np.float64]
 ) -> None:
     """Refuses lamps that cannot light this surface."""
-    for index, lamp in enumerate(lamps):
-        if not isinstance(lamp, PointLamp):
+    is_mesh = scene.surface is not None and scene.surface.mesh is not None
+    for lamp in lamps:
+        if not isinstance(lamp, PointLamp | AreaLamp):
             continue
+        # Parts of a lamp in a shell are named after it.
+        index = next(i for i, table in enumerate(scene.lamp) if _is_of(lamp, table.name))
         if surface.is_distant_only:
             raise InputError(
                 f"the lamp {lamp.name!r} has a place, but a normals-only surface has none",
@@ -297,8 +333,12 @@ def _check_lamps(
                 field=f"lamp[{index}].kind",
                 remedy="use directional, sky or hemisphere, or give a depth or a mesh",
             )
-        is_mesh = scene.surface is not None and scene.surface.mesh is not None
-        if is_mesh and is_buried(lamp.position_m, eye, surface.real):
+        # Areas may be let into a wall; points may not.
+        if (
+            is_mesh
+            and isinstance(lamp, PointLamp)
+            and is_buried(lamp.position_m, eye, surface.real)
+        ):
             x, y, z = lamp.position_m
             raise InputError(
                 f"the lamp {lamp.name!r} at ({x:g}, {y:g}, {z:g}) is inside a wall",
@@ -306,3 +346,7 @@ def _check_lamps(
                 field=f"lamp[{index}].position",
                 remedy="move it into the space that the camera sees",
             )
+
+
+def _is_of(lamp: Lamp, name: str) -> bool:
+    return lamp.name == name or lamp.name.startswith(f"{name}: ")

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from andon.composite import reference as composite
 from andon.display import reference as display
 from andon.engines.prepared import Prepared
+from andon.glow import reference as glow
 from andon.lamps import Lamp
 from andon.lamps.bodies import Body
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
@@ -62,6 +63,16 @@ class ReferenceEngine:
         )
         return Luminance(luminance, self.prepared.photometry)
 
+    def glow(
+        self, frame: CameraFrame, seen: Surface, luminance: Luminance, lamps: Sequence[Lamp]
+    ) -> Luminance:
+        """The picture with the light of luminous bodies scattered around them."""
+        if self.prepared.glow is None:
+            return luminance
+        bodies = composite.bodies_luminance(seen, lamps)
+        cd_m2 = glow.add_glow(luminance.cd_m2, bodies, self.prepared.glow, frame.view)
+        return Luminance(cd_m2, self.prepared.photometry)
+
     def encode(self, frame: CameraFrame, luminance: Luminance) -> DisplayImage:
         """8-bit codes for the screen."""
         codes = display.encode(
@@ -77,3 +88,14 @@ class ReferenceEngine:
     ) -> tuple[Surface, Illuminance, Luminance, DisplayImage]:
         """The quantities as arrays: they are already."""
         return seen, light, luminance, image
+
+    def read_bodies(
+        self, frame: CameraFrame, seen: Surface, lamps: Sequence[Lamp]
+    ) -> tuple[Luminance | None, Luminance | None]:
+        """Luminous bodies alone, and as the glow filters them."""
+        alone = composite.bodies_luminance(seen, lamps)
+        if not alone.any():
+            return None, None
+        word, settings = self.prepared.photometry, self.prepared.glow
+        scattered = None if settings is None else glow.filtered(alone, settings, frame.view)
+        return Luminance(alone, word), None if scattered is None else Luminance(scattered, word)

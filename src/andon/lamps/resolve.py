@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.photometry import Distribution, read_photometry
+from andon.lamps.areas import AreaLamp
 from andon.lamps.bodies import Body
 from andon.lamps.colour import factors_from_rgb
 from andon.lamps.distributions import (
@@ -70,7 +72,9 @@ def resolve_lamps(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
             light = [getattr(lamp, key, None) for key in _LIGHT]
             if not all(np.isfinite(values).all() for values in light if values is not None):
                 raise InputError("is too large to compute with", file=scene.file, field=place)
-        resolved += lamps
+        resolved += [
+            replace(lamp, body=table.name) if isinstance(lamp, AreaLamp) else lamp for lamp in lamps
+        ]
     _check_names(scene, resolved)
     return tuple(resolved)
 

@@ -1,0 +1,81 @@
+"""Real lamps that are part of E0: what virtual things hide of them, and what goes when they go.
+
+The photograph holds the light of its own lamps, shadows of the real things included. A virtual
+object in the way takes some of it back, so ΔE gets
+
+    dimming · E_source · (V_all − V_real)        a source that stays
+    dimming · E_source · (      − V_real)        a source that is switched off
+
+with V_real the visibility among the real surfaces and V_all among these and the virtual ones. Both
+are ordinary lamps, one of positive and one of negative light, so that they have every form, every
+distribution and every shadow that lamps have, and cancel where nothing virtual stands between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.lamps.kinds import Lamp
+from andon.lamps.resolve import resolve_lamps
+
+if TYPE_CHECKING:
+    from andon.scene import Scene
+
+__all__ = ["resolve_sources", "scaled"]
+
+Float = NDArray[np.float64]
+
+_LIGHT = (
+    "intensity_cd",
+    "illuminance_lux",
+    "sky_illuminance_lux",
+    "ground_illuminance_lux",
+    "luminance_cd_m2",
+    "facet_luminance_cd_m2",
+)
+
+
+def resolve_sources(
+    scene: Scene, time_seconds: float, virtual: Iterable[str], /
+) -> tuple[Lamp, ...]:
+    """What the known sources of E0 add to ΔE, and take away, as lamps.
+
+    `virtual` are the caster groups that were not there when the photograph was taken; without any
+    a source that stays changes nothing and gives no lamp.
+    """
+    ambient, groups = scene.ambient, frozenset(virtual)
+    if ambient is None or not ambient.source:
+        return ()
+    dimming = np.broadcast_to(np.asarray(ambient.dimming, float), 3)
+    known = scene.model_copy(update={"lamp": ambient.source})
+    lamps: list[Lamp] = []
+    for lamp in resolve_lamps(known, time_seconds):
+        # Parts of a source in a shell are named after it.
+        is_removed = any(lamp.name.split(": ")[0] == name for name in ambient.removed)
+        shadow = getattr(lamp, "shadow", None)
+        if not is_removed:
+            if shadow is None or not groups:
+                continue
+            lamps.append(scaled(lamp, dimming, name=f"{lamp.name}, now"))
+        changes: dict[str, Any] = {"name": f"{lamp.name}, before"}
+        if shadow is not None:
+            changes["shadow"] = replace(shadow, through=shadow.through | groups)
+        lamps.append(scaled(lamp, -dimming, **changes))
+    return tuple(lamps)
+
+
+def scaled(lamp: Lamp, factor: Float, /, **changes: Any) -> Lamp:
+    """`lamp` with `factor` (3,) times its light, not drawn, and with other `changes`."""
+    for key in _LIGHT:
+        light = getattr(lamp, key, None)
+        if light is not None:
+            changes[key] = light * factor
+    for key, unseen in (("visible_radius_m", 0.0), ("drawn", False)):
+        if hasattr(lamp, key):
+            changes[key] = unseen
+    return replace(lamp, **changes)

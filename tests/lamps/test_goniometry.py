@@ -138,6 +138,24 @@ def test_beams_of_the_main_planes():
     assert (first.name, second.name) == ("C0-C180", "C90-C270")
 
 
+def test_two_wings_count_with_what_lies_between():
+    """A street lamp: its beam reaches from wing to wing, though the middle is dark."""
+    gamma = np.linspace(0, 90, 91)
+    wings = np.interp(gamma, [0, 40, 60, 80], [0.1, 0.1, 1.0, 0])
+    lamp = Distribution("C", np.array([0.0, 360]), gamma, np.tile(wings, (2, 1)))
+    assert goniometry.beam_degrees(lamp)[0] == pytest.approx(140, abs=1e-6)
+
+
+def test_planes_that_differ_at_the_nadir():
+    """Physically impossible, and published: the profile takes the halves' mean there."""
+    gamma = np.array([0.0, 30, 90])
+    table = np.array([[4.0, 4, 0], [2, 2, 0], [2, 2, 0], [2, 2, 0], [4, 4, 0]])
+    lamp = Distribution("C", np.array([0.0, 90, 180, 270, 360]), gamma, table)
+    first, second = goniometry.main_planes(lamp)
+    assert np.interp([-10, 0, 10], first.angles_degrees, first.candela) == pytest.approx([2, 3, 4])
+    assert second.candela.max() == 2
+
+
 def test_a_beam_to_the_side_and_no_beam_at_all():
     tilted = distribution("C", lambda d: np.maximum(d @ ((X - Z) / np.sqrt(2)), 0) ** 20)
     first, _ = goniometry.main_planes(tilted)

@@ -1,4 +1,4 @@
-"""Luminaires of a scene: which way they hang, how much light they give, and in all places the same."""
+"""Luminaires of a scene: which way they hang, how much light they give, the same for all."""
 
 import numpy as np
 import pytest

@@ -182,3 +182,32 @@ def bench(
     from andon.bench.run import run
 
     raise typer.Exit(run(tuple(names or ()), quick, json))
+
+
+lamp_app = typer.Typer()
+app.add_typer(lamp_app, name="lamp")
+
+
+@lamp_app.callback(invoke_without_command=True)
+def _lamp(context: typer.Context) -> None:
+    """Lamps: what files of luminaires say, and lamps that have a name."""
+    if context.invoked_subcommand is None:
+        print(context.get_help())
+
+
+@lamp_app.command("show")
+def lamp_show(
+    file: Annotated[Path, typer.Argument(help="IES LM-63 (.ies) or EULUMDAT (.ldt).")],
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="Polar diagram, PNG.")] = None,
+) -> None:
+    """Say what a luminaire's photometric file holds, and draw its polar diagram.
+
+    Examples:
+
+        andon lamp show street.ies
+
+        andon lamp show office.ldt -o office.png
+    """
+    from andon.cli.lamp import show
+
+    show(file, out)

@@ -62,7 +62,8 @@ Float = NDArray[np.float64]
 
 # Directions this much outside the grid are rounding, not darkness.
 EDGE_DEGREES = 1e-6
-# Main planes are looked at in steps of this; angles of files are multiples of 0.5° or coarser.
+# Main planes are looked at in steps of this; angles of files are multiples of 0.5° or coarser. A
+# crossing is found between two samples, so only a hard edge is off, by half a step.
 PLANE_STEP_DEGREES = 0.1
 
 
@@ -173,28 +174,38 @@ class MainPlane:
 
 def main_planes(distribution: Distribution, /) -> tuple[MainPlane, MainPlane]:
     """The two planes through the beam's axis (see the table above) that diagrams show."""
+    angles = np.linspace(-180.0, 180.0, round(360 / PLANE_STEP_DEGREES) + 1)
+    if distribution.photometry == "C":
+        return (
+            MainPlane("C0-C180", angles, _halves(distribution, angles, 0.0)),
+            MainPlane("C90-C270", angles, _halves(distribution, angles, 90.0)),
+        )
     x, y, z = np.eye(3)
-    axis, first, second = {"C": (-z, x, y), "B": (-z, x, -y), "A": (x, z, -y)}[
-        distribution.photometry
-    ]
-    names = (
-        ("C0-C180", "C90-C270") if distribution.photometry == "C" else ("vertical", "horizontal")
-    )
-    count = round(360 / PLANE_STEP_DEGREES)
-    angles = np.linspace(-180.0, 180.0, count + 1)
+    axis, up = (-z, x) if distribution.photometry == "B" else (x, z)
     theta = np.radians(angles)[:, None]
     profiles = [
-        candela(distribution, np.cos(theta) * axis + np.sin(theta) * side)
-        for side in (first, second)
+        candela(distribution, np.cos(theta) * axis + np.sin(theta) * side) for side in (up, -y)
     ]
     return (
-        MainPlane(names[0], angles, profiles[0]),
-        MainPlane(names[1], angles, profiles[1]),
+        MainPlane("vertical", angles, profiles[0]),
+        MainPlane("horizontal", angles, profiles[1]),
     )
+
+
+def _halves(distribution: Distribution, angles: Float, c: float) -> Float:
+    """Candela of the planes `c` (angles > 0) and `c` + 180 (< 0); at the poles their mean.
+
+    Some files differ by plane even there.
+    """
+    own = candela_at(distribution, np.full_like(angles, c), np.abs(angles))
+    other = candela_at(distribution, np.full_like(angles, c + 180), np.abs(angles))
+    near_pole = np.abs(np.abs(angles) - 90) > 90 - PLANE_STEP_DEGREES / 2
+    return np.where(near_pole, (own + other) / 2, np.where(angles > 0, own, other))
 
 
 def beam_degrees(distribution: Distribution, /) -> tuple[float, float]:
-    """Full angle in degrees, in each of the main planes, of ≥ 50 % of that plane's maximum."""
+    """Full angle in degrees, in each of the main planes, that holds ≥ 50 % of the plane's
+    maximum."""
     first, second = main_planes(distribution)
     return _width(first, 0.5), _width(second, 0.5)
 
@@ -206,23 +217,32 @@ def field_degrees(distribution: Distribution, /) -> tuple[float, float]:
 
 
 def _width(plane: MainPlane, share: float) -> float:
-    """Angle around the plane's maximum until `share` of it; 360 where it never falls so low."""
+    """The smallest angle that holds every direction of ≥ `share` of the plane's maximum.
+
+    All but the widest dark gap: for one lobe its width, for two (a street lamp's wings) both with
+    what lies between them; 360 where it is dark nowhere.
+    """
     values = plane.candela[:-1]  # −180° and 180° are one direction
-    peak = int(np.argmax(values))
-    if not values[peak] > 0:
+    limit = share * values.max()
+    if not limit > 0:
         return 0.0
-    limit = share * values[peak]
-    around = np.roll(values, -peak)
-    if around.min() >= limit:
-        return 360.0
-    return PLANE_STEP_DEGREES * (_until(around, limit) + _until(np.roll(around[::-1], 1), limit))
+    bright = np.flatnonzero(values >= limit)
+    after = np.append(bright[1:], bright[0] + len(values))
+    gaps = [
+        _gap(values, first, last, limit)
+        for first, last in zip(bright.tolist(), after.tolist(), strict=True)
+        if last - first > 1
+    ]
+    return 360.0 - PLANE_STEP_DEGREES * max(gaps, default=0.0)
 
 
-def _until(values: Float, limit: float) -> float:
-    """Steps from the first value until they fall to `limit`, linearly between two of them."""
-    after = int(np.argmax(values < limit))
-    before = after - 1
-    return before + float((values[before] - limit) / (values[before] - values[after]))
+def _gap(values: Float, first: int, last: int, limit: float) -> float:
+    """Steps between the two crossings of `limit` among the dark samples from `first` to `last`."""
+    count = len(values)
+    near, dark = values[first % count], values[(first + 1) % count]
+    far, late = values[last % count], values[(last - 1) % count]
+    leaves, enters = (near - limit) / (near - dark), (far - limit) / (far - late)
+    return last - first - float(leaves + enters)
 
 
 def tilt_factor(distribution: Distribution, tilt_degrees: float, /) -> float:

@@ -108,7 +108,7 @@ def read_ies(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> Distributi
         horizontal,
         vertical,
         candela,
-        name=_first(labels, "LUMINAIRE", "LUMCAT"),
+        name=_first(labels, "LUMCAT", "LUMINAIRE"),
         manufacturer=_first(labels, "MANUFAC"),
         stated_lumens=_stated(labels, path),
         lamp_lumens=None if header.lumens < 0 else header.lamps * header.lumens,

@@ -173,6 +173,22 @@ def test_off_is_off(gpu):
     assert (glow_by_gpu(gpu, picture, picture, glow(0.01), seen) == picture).all()
 
 
+@pytest.mark.parametrize("sigma", [2.0, 6.0, 25.0])
+def test_a_body_that_moves_leaves_nothing_behind(gpu, sigma):
+    """Frame after frame through one stage, told where the body is, as if each were the first."""
+    seen, empty = view(), np.zeros((*view().shape, 3))
+    source, target = texture(gpu, empty), texture(gpu, empty)
+    stage = GlowStage(gpu, source, target, glow(sigma), seen)
+    for column, row in ((3, 90), (40, 70), (60, 50), (135, 4), (20, 20)):
+        bodies = empty.copy()
+        bodies[row : row + 9, column : column + 9] = [800, 400, 200]
+        for made in (source, target):
+            made.write(np.dstack([bodies, np.ones(seen.shape)]))
+        run(gpu, lambda encoder: stage.encode(encoder, (column, row, 9, 9)))  # noqa: B023
+        actual = target.read()[..., :3].astype(np.float64)
+        assert (actual == glow_by_gpu(gpu, bodies, bodies, glow(sigma), seen)).all()
+
+
 def test_twice_is_the_same_as_once_each(gpu):
     """Nothing is left over from the frame before."""
     seen = view()

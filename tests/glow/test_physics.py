@@ -195,11 +195,13 @@ def test_every_plan_is_bounded(length, sigma):
     plan = plan_axis(length, sigma)
     assert 1 <= plan.reduction <= length
     assert 1 <= plan.radius <= 30
-    assert plan.texels <= length + 2 * plan.radius + 2
+    assert plan.texels <= length + 2 * plan.radius + 6
     for pixels in ((0, length), (length - 1, length), (0, 1)):
-        reduced, wide, reached = plan.spans(pixels)
-        assert 0 <= wide[0] <= reduced[0] < reduced[1] <= wide[1] <= plan.texels
-        assert 0 <= reached[0] <= pixels[0] < pixels[1] <= reached[1] <= length
+        spans = plan.spans(pixels)
+        assert 0 <= spans.reduced[0] < spans.filtered[0] < spans.filtered[1] < spans.reduced[1]
+        assert spans.reduced[1] <= plan.texels
+        assert 0 <= spans.reached[0] <= pixels[0] < pixels[1] <= spans.reached[1] <= length
+        assert 0 <= spans.source[0] <= pixels[0] < pixels[1] <= spans.source[1] <= length
 
 
 # ── the eye ─────────────────────────────────────────────────────────────────────────────────────

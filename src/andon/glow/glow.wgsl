@@ -1,7 +1,7 @@
 // The glow along one axis: pixels → cells → filtered cells → pixels (plan.py has the layout).
 //
-// textureLoad throughout; taps beyond the picture have weight 0, taps between cells find the
-// texture's margin of zeros.
+// textureLoad throughout. Taps beyond the picture have weight 0; cells without light, margins
+// included, are drawn as zeros before they are read.
 
 //!import andon/glow/axis.wgsl
 

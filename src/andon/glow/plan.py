@@ -4,7 +4,7 @@
 
     pixels   │0 1 2│3 4 5│6 7 8│          r = 3 pixels a cell
     cells   −1│  0  │  1  │  2  │3        one more at each end: its spline reaches into the picture
-    texels  m m m c c c c c m m m         m: margin as wide as the filter's radius, always 0
+    texels  m m m c c c c c m m m         m: margin, drawn as the zeros that the filter reads
 
 The spline is the discrete quadratic B-spline, three boxes of r pixels one after the other: 3r − 2
 taps, variance (r² − 1)/4 px². Reducing and expanding use it once each, hence
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from andon.glow.reference import gaussian_sum
 
-__all__ = ["AxisPlan", "Span", "plan_axis"]
+__all__ = ["AxisPlan", "Span", "Spans", "plan_axis"]
 
 # Measured on points at all phases: with σ of 2 cells or more the result is within 0.9 % of the
 # peak (r = 2; 0.75 % at 3, 0.55 % for large r), with 1.5 within 2 %.
@@ -31,6 +31,21 @@ REACH_SIGMAS = 3.3
 
 # First and end of an interval.
 Span = tuple[int, int]
+
+
+# A pixel reads the cell that it lies in and one to each side, so cells up to two beyond those that
+# hold light are read, and must be drawn as the zeros that they are.
+EXPANDED_BEYOND = 2
+
+
+@dataclass(frozen=True)
+class Spans:
+    """Intervals of one axis: pixels that are read, texels of two kinds, pixels that are lit."""
+
+    source: Span
+    reduced: Span
+    filtered: Span
+    reached: Span
 
 
 @dataclass(frozen=True)
@@ -59,28 +74,40 @@ class AxisPlan:
         return touching((0, self.length), self.reduction)
 
     @property
+    def margin(self) -> int:
+        """Texels before the first cell and after the last: nothing is ever read beyond them."""
+        return self.radius + EXPANDED_BEYOND
+
+    @property
     def texels(self) -> int:
         """Length of a texture of cells with its margins."""
         first, end = self.cells
-        return end - first + 2 * self.radius
+        return end - first + 2 * self.margin
 
     @property
     def origin(self) -> int:
         """Texel of cell 0."""
-        return self.radius - self.cells[0]
+        return self.margin - self.cells[0]
 
-    def spans(self, pixels: Span, /) -> tuple[Span, Span, Span]:
-        """Where light of these pixels lies: reduced (texels), filtered (texels), pixels again."""
-        first, end = touching(pixels, self.reduction)
-        least, most = self.cells
-        wide = max(first - self.radius, least), min(end + self.radius, most)
-        r = self.reduction
-        reached = max(r * wide[0] - r + 1, 0), min(r * (wide[1] - 1) + 2 * r - 1, self.length)
-        return (
-            (first + self.origin, end + self.origin),
-            (wide[0] + self.origin, wide[1] + self.origin),
-            reached,
+    def spans(self, pixels: Span, /) -> Spans:
+        """What each pass has to draw for light of these pixels, not more than the next reads."""
+        r, (first, end), (least, most) = (
+            self.reduction,
+            touching(pixels, self.reduction),
+            self.cells,
         )
+        lit = max(first - self.radius, least), min(end + self.radius, most)
+        filtered = _wider(lit, EXPANDED_BEYOND)
+        reduced = _wider(filtered, self.radius)
+        return Spans(
+            source=self._pixels(_support(reduced, r)),
+            reduced=_shifted(reduced, self.origin),
+            filtered=_shifted(filtered, self.origin),
+            reached=self._pixels(_support(lit, r)),
+        )
+
+    def _pixels(self, span: Span) -> Span:
+        return max(span[0], 0), min(span[1], self.length)
 
     def wgsl(self, along_x: bool, fraction: float, limit: float, /) -> str:
         """The constants that stand in for axis.wgsl."""
@@ -103,6 +130,20 @@ def touching(pixels: Span, reduction: int, /) -> Span:
     """The cells c whose spline, pixels r·c − r + 1 … r·c + 2r − 2, touches `pixels`."""
     r = reduction
     return -((2 * r - 2 - pixels[0]) // r), (pixels[1] + r - 2) // r + 1
+
+
+def _support(cells: Span, reduction: int) -> Span:
+    """The pixels that the splines of `cells` touch."""
+    r = reduction
+    return r * cells[0] - r + 1, r * (cells[1] - 1) + 2 * r - 1
+
+
+def _wider(span: Span, by: int) -> Span:
+    return span[0] - by, span[1] + by
+
+
+def _shifted(span: Span, by: int) -> Span:
+    return span[0] + by, span[1] + by
 
 
 def plan_axis(length: int, sigma_px: float, /) -> AxisPlan:

@@ -50,9 +50,9 @@ def _along(values: Float, taps: Float, axis: int) -> Float:
     shape = [1] * values.ndim
     shape[axis] = length // 2 + 1
     spectrum = np.fft.rfft(values, length, axis) * np.fft.rfft(taps, length).reshape(shape)
-    whole: Float = np.fft.irfft(spectrum, length, axis)
+    whole = np.moveaxis(np.fft.irfft(spectrum, length, axis), axis, 0)[radius : radius + size]
     # Where nothing arrives the transform leaves ±1e-16 of the brightest.
-    return np.maximum(np.take(whole, np.arange(radius, radius + size), axis), 0)
+    return np.maximum(np.moveaxis(whole, 0, axis), 0)
 
 
 def filtered(bodies: NDArray[Any], glow: Glow, view: View, /) -> Float:

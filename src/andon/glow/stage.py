@@ -95,14 +95,14 @@ class GlowStage:
     def encode(self, encoder: Any, within: tuple[int, int, int, int] | None = None) -> None:
         """Records the glow.
 
-        `within`: (x, y, width, height) in pixels that holds all bodies; what is outside it is
-        not read. None is the whole picture; a lantern of 100 px costs a tenth of that.
+        `within`: (x, y, width, height) in pixels that holds all bodies; what is outside it
+        is 0. None is the whole picture.
         """
         if self.glow.fraction == 0:
             return
         reached = self._filter(encoder, within)
         if reached is not None:
-            self._draw(encoder, "scatter", self._target, *reached, load=True)
+            self._draw(encoder, "scatter", self._target, *reached)
 
     def encode_filtered(self, encoder: Any, target: Texture) -> None:
         """Records G∗B alone into `target` (rgba16float, of the view's size), for figures."""
@@ -119,22 +119,19 @@ class GlowStage:
         rows = max(y, 0), min(y + height, self._y.length)
         if columns[0] >= columns[1] or rows[0] >= rows[1]:
             return None
-        reduced_x, filtered_x, reached_x = self._x.spans(columns)
-        reduced_y, filtered_y, reached_y = self._y.spans(rows)
-        self._draw(encoder, "reduce x", self._columns, reduced_x, rows)
-        self._draw(encoder, "reduce y", self._cells, reduced_x, reduced_y)
-        self._draw(encoder, "filter x", self._swept, filtered_x, reduced_y)
-        self._draw(encoder, "filter y", self._cells, filtered_x, filtered_y)
-        self._draw(encoder, "expand x", self._rows, reached_x, filtered_y)
-        return reached_x, reached_y
+        in_x, in_y = self._x.spans(columns), self._y.spans(rows)
+        self._draw(encoder, "reduce x", self._columns, in_x.reduced, in_y.source)
+        self._draw(encoder, "reduce y", self._cells, in_x.reduced, in_y.reduced)
+        self._draw(encoder, "filter x", self._swept, in_x.filtered, in_y.reduced)
+        self._draw(encoder, "filter y", self._cells, in_x.filtered, in_y.filtered)
+        self._draw(encoder, "expand x", self._rows, in_x.reached, in_y.filtered)
+        return in_x.reached, in_y.reached
 
-    def _draw(
-        self, encoder: Any, name: str, target: Texture, x: Span, y: Span, *, load: bool = False
-    ) -> None:
-        """One pass over columns and rows of `target`; the rest is zero, or as it was."""
+    def _draw(self, encoder: Any, name: str, target: Texture, x: Span, y: Span) -> None:
+        """One pass over columns and rows of `target`; the rest stays, and is not read."""
         step = self._passes[name]
         render = encoder.begin_render_pass(
-            label=f"glow: {name}", color_attachments=[color_attachment(target.view, load=load)]
+            label=f"glow: {name}", color_attachments=[color_attachment(target.view, load=True)]
         )
         render.set_pipeline(step.pipeline)
         render.set_bind_group(0, step.groups[0].group)

@@ -6,6 +6,7 @@ import pytest
 from andon.errors import InputError
 from andon.lamps import PointLamp, Shell, expand
 from andon.lamps.coarse import coarse_corners, triangle_areas
+from andon.lamps.shells.cutting import cut_long, widest_edge
 from andon.lamps.shells.form import form_of
 from andon.lamps.shells.layer import clean_layer, rims, welded
 from andon.lamps.solids import icosphere
@@ -196,3 +197,28 @@ def test_dust_has_no_few_triangles():
     flakes = random.uniform(-1, 1, (3000, 1, 3)) + random.normal(scale=1e-3, size=(3000, 3, 3))
     with pytest.raises(InputError, match="cannot stand for"):
         coarse_corners(flakes.reshape(-1, 3), np.arange(9000).reshape(-1, 3), 96)
+
+
+def test_cutting_keeps_area_winding_and_neighbours():
+    slab = box((0.2, 0.9, 0.3))
+    corners = slab.positions[slab.triangles]
+    cut = cut_long(np.concatenate([corners, 2 * corners], axis=2), radians=0.3, most=10_000)
+    np.testing.assert_allclose(cut[..., 3:], 2 * cut[..., :3])
+    assert widest_edge(cut[..., :3]) <= 0.3
+    np.testing.assert_allclose(
+        np.linalg.norm(areas(cut[..., :3]), axis=1).sum(),
+        np.linalg.norm(areas(corners), axis=1).sum(),
+    )
+    assert (
+        rims(clean_layer(cut[..., :3].reshape(-1, 3), np.arange(3 * len(cut)).reshape(-1, 3))) == []
+    )
+    few = cut_long(corners, radians=0.01, most=500)
+    assert len(few) <= 500
+
+
+def test_facets_of_a_tall_shade_are_cut_across():
+    form = form_of(Shell(mesh=tube(sides=300)))
+    assert len(form.facets) <= 96
+    assert widest_edge(form.facets) < 1.5  # the walls as a whole are seen under 1.97
+    outwards = np.einsum("ij,ij->i", areas(form.facets), form.facets.mean(axis=1))
+    assert (outwards > 0).all()

@@ -19,7 +19,9 @@ def quarters(corners: Float, /) -> Float:
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
     pieces = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
-    return np.stack([np.stack(piece, axis=1) for piece in pieces], axis=1).reshape(-1, 3, 3)
+    return np.stack([np.stack(piece, axis=1) for piece in pieces], axis=1).reshape(
+        -1, *corners.shape[1:]
+    )
 
 
 @lru_cache(maxsize=8)

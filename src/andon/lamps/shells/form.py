@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.lamps.coarse import coarse_corners
+from andon.lamps.coarse import coarse_corners, triangle_areas
 from andon.lamps.shells.beams import solid_angles
+from andon.lamps.shells.cutting import cut_long, widest_edge
 from andon.lamps.shells.layer import FIELD, Layer, clean_layer, rims
 from andon.lamps.shells.lids import fan, flat_lid, vector_area
 from andon.lamps.shells.model import Shell
-from andon.lamps.solids import icosphere, quarters
+from andon.lamps.solids import icosphere
 from andon.quantities import Geometry
 
 __all__ = ["Form", "form_of"]
@@ -30,8 +31,13 @@ SEAM = 1e-4
 IN_PLANE = 1e-6
 # How often the shell may cover a direction twice before it is no single layer any more.
 MAX_OVERLAP = 0.05
-# Triangles of the drawn shell are cut until none is seen from the lamp under more than this.
-DRAWN_STERADIAN, MAX_DRAWN = 0.01, 16_384
+# The lamp sees edges of the drawn shell under this at most, unless that took too many triangles, and
+# of its facets under the other: on a flat wall luminance falls as cos³ of the angle, so halfway along
+# an edge of δ it differs from the mean of both ends by up to ⅜ δ² (1.5 %).
+DRAWN_RADIANS, MAX_DRAWN = 0.2, 40_000
+FACET_RADIANS = 1.2
+# Of their area, facets that are cut across may lose so much more.
+CUT_LOSS = 0.1
 SPHERE_CUTS_DRAWN, SPHERE_CUTS_LIGHT = 4, 1
 
 
@@ -44,7 +50,7 @@ class Form:
     drawn : geometry of the body, with normals where the mesh has them.
     corners : (m, 3, 3) all triangles as given.
     facets : (n, 3, 3) the triangles that stand for them as emitters.
-    covers : (4, 3, 3)… triangles (k, 3, 3) that close it; none if `has_gaps` or nothing is open.
+    covers : (k, 3, 3) triangles that close it; none if `has_gaps` or nothing is open.
     lids : flat polygons (k, 3), one for each opening, counter-clockwise from outside.
     has_gaps : several parts, or too many openings: what is open is what the parts leave free.
     """
@@ -84,7 +90,7 @@ def form_of(shell: Shell, /) -> Form:
     return Form(
         _drawn(shell.mesh, layer),
         layer.corners,
-        coarse_corners(layer.positions, layer.triangles, MAX_FACETS),
+        _facets(layer),
         np.concatenate(covers) if covers else np.empty((0, 3, 3)),
         lids,
         gaps,
@@ -154,6 +160,18 @@ def _outside() -> InputError:
     )
 
 
+def _facets(layer: Layer) -> Float:
+    """Few triangles for many, none of which spans bright and dark parts if that can be helped."""
+    facets = coarse_corners(layer.positions, layer.triangles, MAX_FACETS)
+    if widest_edge(facets) <= FACET_RADIANS:
+        return facets
+    # Long slivers, as modellers make cylinders: fewer of them leave room to cut them across.
+    fewer = coarse_corners(layer.positions, layer.triangles, MAX_FACETS // 4)
+    cut = cut_long(fewer, radians=FACET_RADIANS / 2, most=MAX_FACETS)
+    lost = abs(triangle_areas(fewer).sum() / triangle_areas(facets).sum() - 1)
+    return cut if lost < CUT_LOSS and widest_edge(cut) < widest_edge(facets) else facets
+
+
 def _drawn(mesh: Geometry, layer: Layer) -> Geometry:
     """The mesh as given, turned outwards, with corners of its own where it is flat-shaded."""
     triangles = mesh.triangles[layer.source].astype(np.int64)
@@ -164,9 +182,9 @@ def _drawn(mesh: Geometry, layer: Layer) -> Geometry:
         # A file's normals may look in while its triangles look out: each joins its triangle.
         across = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
         normals *= np.where(np.einsum("tki,ti->tk", normals, across) < 0, -1, 1)[..., None]
-    while 4 * len(at) <= MAX_DRAWN and np.abs(solid_angles(at)).max() > DRAWN_STERADIAN:
-        at = quarters(at)
-        normals = None if normals is None else quarters(normals)
+    both = at if normals is None else np.concatenate([at, normals], axis=2)
+    both = cut_long(both, radians=DRAWN_RADIANS, most=MAX_DRAWN)
+    at, normals = both[..., :3], None if normals is None else both[..., 3:]
     return Geometry(
         at.reshape(-1, 3),
         np.arange(3 * len(at), dtype=np.int32).reshape(-1, 3),

@@ -12,13 +12,14 @@ WIDTH = 64
 
 
 class Caller:
-    """`expression` over `x[0]`, `x[1]`, … (vec4f each) gives a vec4f per row."""
+    """`expression` over `x[0]`, `x[1]`, … (vec4f each), in WGSL, gives a vec4f per row.
+
+    `rows` is how many at most, or (width, height) of the picture.
+    """
 
     def __init__(self, gpu, module, expression, columns, rows, *, statements=""):
-        self.gpu, self.rows = gpu, rows
-        self.width, self.height = (WIDTH, -(-rows // WIDTH)) if rows > WIDTH else (rows, 1)
-        if isinstance(rows, tuple):
-            self.width, self.height = rows
+        self.gpu = gpu
+        self.width, self.height = rows if isinstance(rows, tuple) else (WIDTH, -(-rows // WIDTH))
         self.inputs = make_texture(gpu, "rgba32float", self.width, self.height, layers=columns)
         self.target = make_texture(gpu, "rgba32float", self.width, self.height)
         reads = ", ".join(f"textureLoad(rows, at, {k}, 0)" for k in range(columns))
@@ -26,7 +27,7 @@ class Caller:
 @group(0) @binding(0) var rows: texture_2d_array<f32>;
 @fragment fn call(@builtin(position) place: vec4f) -> @location(0) vec4f {{
   let at = vec2i(place.xy);
-  let x = array<vec4f, {columns}>({reads});
+  var x = array<vec4f, {columns}>({reads});
   {statements}
   return {expression};
 }}

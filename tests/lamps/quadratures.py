@@ -4,7 +4,7 @@ import numpy as np
 
 from worlds import unit
 
-__all__ = ["by_area", "by_nusselt", "by_rings", "by_shadow"]
+__all__ = ["by_area", "by_hull", "by_nusselt", "by_rings"]
 
 
 def gauss(n, low=0.0, high=1.0):
@@ -75,18 +75,62 @@ def by_nusselt(inside, normal, n=400):
     return inside(w).sum() * (2 / n) ** 2
 
 
-def by_shadow(outline, normal, n=200):
-    """½ ∮ of a closed smooth `outline` (k, 3) of directions: as a fan of spherical triangles.
+def by_hull(ends, radius, normal, n=3000):
+    """A tube: the convex hull of its end balls' circles in a plane before the eye, as a polygon.
 
-    Each chord's triangle with the middle is cut at the horizon and summed in Lambert's form.
+    Inscribed polygons of n and 2n corners, extrapolated: their error goes with 1/n².
     """
-    middle = unit(outline.mean(axis=0))
-    total = 0.0
-    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
-        corners = cut(np.array([middle, a, b]), normal)
-        for p, q in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-            cross = np.cross(p, q)
-            size = np.linalg.norm(cross)
-            if size > 0:
-                total += 0.5 * np.arctan2(size, p @ q) * (cross @ normal) / size
+    coarse, fine = (_hull_polygon(ends, radius, normal, k) for k in (n, 2 * n))
+    return fine + (fine - coarse) / 3
+
+
+def _hull_polygon(ends, radius, normal, n):
+    t = (np.arange(n) + 0.5) * 2 * np.pi / n
+    edge = ends[1] - ends[0]
+    at = np.clip(-(ends[0] @ edge) / (edge @ edge), 0, 1)
+    eye = unit(ends[0] + at * edge)  # the nearest point: all of the tube is before it
+    u = unit(np.cross(eye, [1, 0, 0] if abs(eye[0]) < 0.6 else [0, 1, 0]))
+    v = np.cross(eye, u)
+    circles = []
+    for end in ends:
+        axis, half = unit(end), np.arcsin(radius / np.linalg.norm(end))
+        p = unit(np.cross(axis, [1, 0, 0] if abs(axis[0]) < 0.6 else [0, 1, 0]))
+        ring = np.cos(t)[:, None] * p + np.sin(t)[:, None] * np.cross(axis, p)
+        circles.append(np.cos(half) * axis + np.sin(half) * ring)
+    rays = np.concatenate(circles)
+    plane = np.c_[rays @ u, rays @ v] / (rays @ eye)[:, None]
+    corners = rays[hull(plane)]
+    a, b = corners, np.roll(corners, -1, axis=0)
+    ha, hb = a @ normal, b @ normal
+    safe = np.where(ha == hb, 1.0, ha - hb)
+    crossing = a + (b - a) * (ha / safe)[:, None]
+    first = np.where((ha > 0)[:, None], a, crossing)
+    last = np.where((hb > 0)[:, None], b, crossing)
+    kept = (ha > 0) | (hb > 0)
+    cross = np.cross(first, last)[kept]
+    size = np.linalg.norm(cross, axis=1)
+    angle = np.arctan2(size, (first * last).sum(axis=1)[kept])
+    total = 0.5 * (angle * (cross @ normal) / np.maximum(size, 1e-300)).sum()
+    leaves, enters = crossing[(ha > 0) & (hb <= 0)], crossing[(ha <= 0) & (hb > 0)]
+    if len(leaves):
+        x, y = leaves[0], enters[0]
+        total += 0.5 * np.arctan2(np.cross(x, y) @ normal, x @ y)
     return abs(total)
+
+
+def hull(points):
+    """Indices of the convex hull of `points` (n, 2), in order (Andrew's chain)."""
+    order = np.lexsort(points.T[::-1])
+
+    def chain(indices):
+        kept = []
+        for i in indices:
+            while len(kept) > 1:
+                p, q = points[kept[-1]] - points[kept[-2]], points[i] - points[kept[-2]]
+                if p[0] * q[1] - p[1] * q[0] > 0:
+                    break
+                kept.pop()
+            kept.append(i)
+        return kept
+
+    return np.array(chain(order)[:-1] + chain(order[::-1])[:-1])

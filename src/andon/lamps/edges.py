@@ -11,8 +11,18 @@ facets of one plane and one luminance cancel for every receiver and are left out
 edges, not 36.
 
 A luminous picture is a division into cells of one luminance each, whose inner edges carry the
-*difference* of two cells. Its error is that of a picture made coarse: flux is kept, and what is
-lost falls with distance as the cube of (cell/distance); see `textured_edges`.
+*difference* of two cells. Its error is that of a picture made coarse: flux is kept, detail is not.
+White noise of 16 × 16 texels on a square of side s, against quadrature of the bilinear picture;
+median relative error over receivers that face any way, by distance from the lamp's plane:
+
+=========== ===== ====== ======= ======= ======= =======
+cells       edges 0.1 s  0.25 s  0.5 s   1 s     2 s
+=========== ===== ====== ======= ======= ======= =======
+1 (uniform)     4 10 %   4 %     2.7 %   1.7 %   0.7 %
+4 × 4          40 5 %    2.2 %   0.8 %   0.3 %   0.14 %
+8 × 8         144 4 %    1.0 %   0.4 %   0.1 %   0.07 %
+16 × 16       544 0.5 %  0.08 %  0.02 %  0.01 %  0.002 %
+=========== ===== ====== ======= ======= ======= =======
 """
 
 from __future__ import annotations
@@ -142,12 +152,11 @@ def textured_edges(
     cells : along each side, ≥ 1; each has the mean of the texels in it, shared texels by area.
 
     The weights are factors like the texture; edges between equal cells are left out, so that a
-    uniform texture leaves the outline. Error against the bilinear picture, for a random picture
-    of 16 × 16 texels on a square of side s in 8 × 8 cells, relative, median (worst): see the test.
+    uniform texture leaves the outline.
 
     Raises
     ------
-    InputError : `vertices` is no rectangle's, or `texture` no picture.
+    InputError : not four `vertices`, or `texture` is no picture.
     """
     corners, picture = np.asarray(vertices, np.float64), np.asarray(texture, np.float64)
     if corners.shape != (4, 3):

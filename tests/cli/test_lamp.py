@@ -83,3 +83,13 @@ def test_help_has_examples(capfd, folder):
     assert "andon lamp show office.ldt -o office.png" in " ".join(
         run_andon(capfd, "lamp", "show", "--help").out.split()
     )
+
+
+def test_presets_are_listed(capfd, folder):
+    from andon.scene.presets import PRESETS
+
+    outcome = run_andon(capfd, "lamp", "presets")
+    assert outcome.code == 0
+    for name, preset in PRESETS.items():
+        assert name in outcome.out
+        assert f"{preset.keys['temperature_k']:g}" in outcome.out

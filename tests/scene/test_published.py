@@ -45,6 +45,13 @@ def test_shorthands_are_valid(validator):
     )
 
 
+def test_presets_are_valid(validator):
+    candle = {"preset": "candle", "position": [0, 1, -2], "flux_lm": 9}
+    validator.validate({"lamp": [candle], "ambient": {"source": [candle]}})
+    for wrong in ({"preset": "candel"}, {"preset": "candle", "flux": 9}):
+        assert not validator.is_valid({"lamp": [wrong]})
+
+
 def test_dumped_scenes_are_valid(validator):
     validator.validate(tomllib.loads(parse_scene(EXAMPLE).to_toml()))
 

@@ -72,7 +72,7 @@ def relight(
     scene: Annotated[Path | None, typer.Option(help="Scene file (TOML); options win.")] = None,
     lamp: Annotated[
         list[str] | None,
-        typer.Option(help="kind=point,position=0.5,0.3,-1.5,flux_lm=800,temperature_k=2700"),
+        typer.Option(help="preset=bulb,position=0.5,0.3,-1.5 or kind=point,…,flux_lm=800"),
     ] = None,
     ambient_lux: Annotated[
         float | None, typer.Option(help="E0: illuminance that the photograph was taken in.")
@@ -211,3 +211,18 @@ def lamp_show(
     from andon.cli.lamp import show
 
     show(file, out)
+
+
+@lamp_app.command("presets")
+def lamp_presets() -> None:
+    """List the lamps that have a name, for `preset = "…"` in a scene and in `--lamp`.
+
+    Examples:
+
+        andon lamp presets
+
+        andon relight room.png … --lamp preset=candle,position=0,0.2,-1 -o lit.png
+    """
+    from andon.cli.lamp import presets
+
+    presets()

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from andon.cli.console import check_writable
 from andon.errors import InputError
@@ -11,7 +12,7 @@ from andon.errors import InputError
 if TYPE_CHECKING:
     from andon.files.photometry import Distribution
 
-__all__ = ["show"]
+__all__ = ["presets", "show"]
 
 
 def show(file: Path, out: Path | None) -> None:
@@ -112,3 +113,28 @@ def _draw(distribution: Distribution, file: Path, out: Path) -> None:
         f"type {distribution.photometry}"
     )
     write_png(out, polar_picture(main_planes(distribution), title, facts))
+
+
+def presets() -> None:
+    """Prints the lamps that have a name."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from andon.scene.presets import PRESETS
+
+    table = Table(box=None, pad_edge=False)
+    table.add_column("preset", no_wrap=True)
+    for column in ("what", "light", "colour", "kind", "source"):
+        table.add_column(column, overflow="fold")
+    for name, preset in PRESETS.items():
+        keys = preset.keys
+        colour = f"{keys['temperature_k']:g} K{' daylight' if keys.get('daylight') else ''}"
+        table.add_row(name, preset.what, _light(keys), colour, keys["kind"], preset.source)
+    Console(highlight=False, markup=False).print(table)
+
+
+def _light(keys: Mapping[str, Any]) -> str:
+    from andon.scene.presets import LIGHT_KEYS
+
+    units = dict(zip(LIGHT_KEYS, ("cd", "lm", "cd/m²", "lx"), strict=True))
+    return " ".join(f"{keys[key]:g} {unit}" for key, unit in units.items() if key in keys)

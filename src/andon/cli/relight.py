@@ -95,8 +95,17 @@ def scene_of(options: RelightOptions) -> Any:
     if options.scene is None:
         _assume(tables, options)
     given = [options.photo, options.depth, options.camera, options.mesh, *options.objects]
+    given += _luminaires(options)
     scene = scene_from_dict(tables, folder=folder, file=file)
     return scene.trusting([path for path in given if path is not None])
+
+
+def _luminaires(options: RelightOptions) -> list[Path]:
+    """Photometric files that the user named in --lamp."""
+    from andon.lamps import parse_lamp_option
+
+    lamps = [parse_lamp_option(text) for text in options.lamps]
+    return [Path(str(lamp["file"])) for lamp in lamps if "file" in lamp]
 
 
 def _override(tables: dict[str, Any], options: RelightOptions) -> None:

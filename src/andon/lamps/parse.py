@@ -6,7 +6,8 @@
     value  = text | number *( sep number ) | "[" … "]"        sep = "," | ";" | space
     key    = name *( "." name )          shell.radius_m=0.1
 
-A piece between commas without an equals sign continues the value before it.
+A piece between commas without an equals sign continues the value before it. A preset
+(``preset=candle,position=0,1,-2``) is written out.
 """
 
 from __future__ import annotations
@@ -33,8 +34,13 @@ def parse_lamp_option(text: str, /, *, field: str = "--lamp") -> dict[str, Any]:
     table: dict[str, Any] = {}
     for key, value in _pairs(text, field):
         _put(table, key, _parsed(value, f"{field} {key}"), field)
+    if "preset" in table:
+        from andon.scene.presets import expand_preset
+
+        table = expand_preset(table, f"{field} preset")
     if "kind" not in table:
-        raise InputError("kind is required", field=field, remedy="begin with kind=point,…")
+        remedy = "begin with kind=point,… or preset=bulb,…"
+        raise InputError("kind is required", field=field, remedy=remedy)
     _check_keys(table, field)
     return table
 

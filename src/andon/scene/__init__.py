@@ -28,13 +28,17 @@ from andon.scene.keyframes import lamp_at
 from andon.scene.lamp import LAMP_KINDS
 from andon.scene.load import load_scene, parse_scene, scene_from_dict
 from andon.scene.model import Scene
+from andon.scene.presets import PRESETS, Preset, expand_preset
 from andon.scene.reference import scene_reference_markdown
 from andon.scene.schema import json_schema
 
 __all__ = [
     "LAMP_KINDS",
+    "PRESETS",
+    "Preset",
     "Scene",
     "dump_scene",
+    "expand_preset",
     "json_schema",
     "lamp_at",
     "load_scene",

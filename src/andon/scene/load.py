@@ -14,6 +14,7 @@ from pydantic import ValidationError
 
 from andon.errors import InputError
 from andon.scene.model import Scene
+from andon.scene.presets import expand_presets
 from andon.scene.refusals import input_error
 
 __all__ = ["MAX_SCENE_BYTES", "load_scene", "parse_scene", "scene_from_dict"]
@@ -80,7 +81,7 @@ def scene_from_dict(
 
     `folder` is what paths are relative to; `file` is named in messages. Raises `InputError`.
     """
-    plain = _plain(tables, file, 0)
+    plain = expand_presets(_plain(tables, file, 0), file)
     try:
         scene = Scene.model_validate(plain)
     except ValidationError as error:

@@ -13,6 +13,7 @@ from andon.scene.base import Table
 from andon.scene.lamp import LAMP_KINDS
 from andon.scene.lamp_base import LampTable
 from andon.scene.model import Scene
+from andon.scene.presets import PRESETS
 
 __all__ = ["EXAMPLE", "scene_reference_markdown"]
 
@@ -68,6 +69,32 @@ from the program's own models; `scene.schema.json` is the same for editors.
 """
 
 
+_PRESETS = """\
+### `preset = "…"`
+
+Instead of `kind`: a lamp with a name. Given keys override the preset's; a given quantity of light
+or colour replaces the preset's. Also in `[[ambient.source]]` and
+`--lamp preset=candle,position=0,1,-2`.
+
+| preset | what | stands for | source |
+|---|---|---|---|
+"""
+
+
+def preset_lines() -> list[str]:
+    """The presets as rows of a Markdown table."""
+    return [
+        f"| `{name}` | {preset.what} | "
+        f"{', '.join(f'`{key} = {_plain(value)}`' for key, value in preset.keys.items())} | "
+        f"{preset.source} |"
+        for name, preset in PRESETS.items()
+    ]
+
+
+def _plain(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False)
+
+
 def scene_reference_markdown() -> str:
     """Reference of every table as Markdown: keys, types, defaults, meaning."""
     parts = [_INTRODUCTION.format(example=EXAMPLE)]
@@ -102,6 +129,7 @@ def _lamp_sections() -> Iterator[str]:
         yield f'### `kind = "{kind}"`\n\n{getdoc(table)}\n'
         own = [name for name in table.model_fields if name not in common and name != "kind"]
         yield _key_table(table, sorted(own, key=lambda name: name not in table.__annotations__))
+    yield _PRESETS + "\n".join(preset_lines()) + "\n"
     seen: list[type[Table]] = []
     for table in LAMP_KINDS.values():
         for name, info in table.model_fields.items():

@@ -155,6 +155,12 @@ def test_a_depth_of_pickles(refused, folder):
     assert "depth.npy" in refused()
 
 
+def test_a_photograph_given_as_depth(refused):
+    line = refused(depth="photo.png")
+    assert "photo.png: must be a gray PNG, whose numbers are depths; this one has colour" in line
+    assert "export the depth itself, as 16-bit gray PNG" in line
+
+
 def test_disparity_without_a_baseline(refused):
     assert "surface.depth.baseline_m: kind 'disparity' needs it" in refused(depth_kind="disparity")
 
@@ -336,7 +342,9 @@ def test_a_scene_that_is_no_toml(refused_scene):
 
 
 def test_a_view_that_is_not_there(refused):
-    assert "view: there is no view 'left', this rig has mono" in refused(view="left")
+    line = refused(view="left")
+    assert "--view: there is no view 'left', this rig has mono; leave --view out" in line
+    assert "[rig.left] and [rig.right]" in line
 
 
 @pytest.mark.parametrize(
@@ -381,7 +389,10 @@ def test_a_lamp_with_a_baked_transport(refused_scene):
         (["relight", "photo.png"], "out"),
         (["relight", "photo.png", "-o", "o.png", "--dpth", "x"], "No such option"),
         (["relight", "photo.png", "-o", "o.png", "--ambient-lux", "bright"], "number"),
-        (["relight", "photo.png", "-o", "o.png", "--engine", "fast"], "'fast' is not one of"),
+        (
+            ["relight", "photo.png", "-o", "o.png", "--engine", "cuda"],
+            "--engine: must be one of auto, gpu, reference, got 'cuda'; gpu draws on every adapter",
+        ),
         (
             ["demo", "phto"],
             "there is no demonstration 'phto', there is photo; did you mean 'photo'?",

@@ -1,10 +1,14 @@
 """Pictures for people: false colours, depth, normals, contact sheets, and golden ones of them."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from andon.display.false_colour import (
+    ABOVE_PX,
     BAR_WIDTH_PX,
+    BELOW_PX,
     CAPTION_PX,
     HOLE,
     PAPER,
@@ -93,12 +97,35 @@ def test_the_scale_ends_at_a_round_number_above_the_light(most, label, monkeypat
     assert numbers[-1] == pytest.approx(numbers[0] / 100, rel=0.01)
 
 
+@pytest.mark.parametrize("unit", ["lx", "lx, relative", "lx (relative)"])
+@pytest.mark.parametrize("height", [1, 12, 20, 33, 45, 60, 76, 90, 120, 200, 500, 1080])
+def test_no_label_lies_on_another_or_beyond_the_rim(height, unit, monkeypatch):
+    from PIL import ImageDraw
+
+    boxes = {}
+    draw = ImageDraw.ImageDraw.text
+
+    def text(self, xy, text, **more):
+        boxes[text] = self.textbbox(xy, text, font=more["font"], anchor=more["anchor"])
+        draw(self, xy, text, **more)
+
+    monkeypatch.setattr(ImageDraw.ImageDraw, "text", text)
+    false_colour(np.full((height, 5), 700.0), unit)
+    assert (unit in boxes) == (height >= 76)
+    assert boxes
+    if height >= 20:
+        assert all(top >= 0 and bottom <= height for _, top, _, bottom in boxes.values())
+        assert all(right <= BAR_WIDTH_PX for _, _, right, _ in boxes.values())
+    spans = sorted((top, bottom) for _, top, _, bottom in boxes.values())
+    assert all(below >= above for (_, above), (below, _) in pairwise(spans)), boxes
+
+
 def test_colours_and_labels_say_the_same():
     """The picture's colour of a tenth of the top is the bar's colour at half its height."""
     values = np.full((120, 160), 100.0)
     values[:60] = 1000.0
     picture = false_colour(values, "lx").astype(int)
-    bar = picture[16:-16, 160 + 14]
+    bar = picture[ABOVE_PX:-BELOW_PX, 160 + 14]
     assert np.abs(bar[len(bar) // 2] - picture[90, 50]).max() <= 8
     assert np.abs(bar[0] - picture[10, 50]).max() <= 2
 
@@ -115,6 +142,14 @@ def test_darkness_is_black_not_an_error(values):
     nothing = np.zeros(values.shape, bool)
     assert (false_colour(values, "lx", valid=nothing)[:, :64] == HOLE).all()
     assert (depth_picture(values, nothing) == HOLE).all()
+
+
+def test_one_infinite_pixel_leaves_the_scale_to_the_others():
+    values = RAMP.copy()
+    values[0, 0] = np.inf
+    picture = false_colour(values, "lx")
+    assert (picture[1:] == false_colour(RAMP, "lx")[1:]).all()
+    assert picture[0, 0].sum() >= picture.sum(axis=-1)[:, :160].max()
 
 
 def test_near_is_bright():

@@ -44,6 +44,17 @@ def test_codes_agree(gpu, name, tone):
     assert len(np.unique(expected)) > 200
 
 
+@pytest.mark.parametrize("tone", ["none", "reinhard"])
+@pytest.mark.parametrize("name", RESPONSES)
+def test_infinite_light_is_white(gpu, name, tone):
+    light = np.array([[[np.inf, 0.25, np.inf], [0.0, np.inf, 60000.0]]])
+    exposure = Exposure(tone=tone)
+    expected = reference.encode(light, exposure, RESPONSES[name], 1.0)
+    actual = shown_by_gpu(gpu, light, RESPONSES[name], exposure, 1.0)
+    assert np.abs(actual.astype(int) - expected.astype(int)).max() <= 1
+    assert (actual[np.isinf(light)] == 255).all()
+
+
 def test_a_stated_exposure_agrees(gpu):
     exposure = Exposure(units_per_cd_m2=0.004)
     expected = reference.encode(LIGHT * 50.0, exposure, SRGB, 50.0)

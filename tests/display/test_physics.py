@@ -24,6 +24,19 @@ def test_more_light_is_never_darker_and_stays_within_the_screen(tone):
         assert shown.max() < 1
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("tone", ["none", "reinhard"])
+def test_infinite_light_is_white(tone):
+    """Captured light above 65504 comes as infinity from half floats."""
+    light = np.array([[[np.inf, 0.5, 1e300], [-np.inf, np.inf, 65504.0]]])
+    shown = tone_curve(light, tone)
+    assert np.isfinite(shown).all()
+    assert shown[0, 0, 0] == shown[0, 1, 1] == 1
+    assert shown[0, 1, 0] == 0
+    codes = encode(light, Exposure(tone=tone), SRGB, 1.0)
+    assert codes[0].tolist() == [[255, 188, 255], [0, 255, 255]]
+
+
 def test_the_shoulder_begins_with_slope_one():
     step = 1e-6
     below, at, above = tone_curve(SHOULDER_START + np.array([-step, 0, step]), "reinhard")

@@ -340,10 +340,21 @@ def test_skins_put_the_mesh_where_its_joints_are(tmp_path: Path) -> None:
         {"children": [2]},
         {"translation": [2, 0, 3]},
     ]
-    geometry = read(tmp_path, document, GLTF_BINARY + joints + weights + stored).geometry
+    mesh = read(tmp_path, document, GLTF_BINARY + joints + weights + stored)
+    assert mesh.at_rest == ("skin",)
     np.testing.assert_allclose(
-        geometry.positions, np.add(QUAD, [[0, 0, 0], [0, 0, 3], [0, 0, 3], [0, 0, 0]])
+        mesh.geometry.positions, np.add(QUAD, [[0, 0, 0], [0, 0, 3], [0, 0, 3], [0, 0, 0]])
     )
+
+
+def test_what_would_move_is_told(tmp_path: Path) -> None:
+    """Of what is drawn: the skin of a node without a mesh moves nothing."""
+    document: Any = gltf_json()
+    assert read(tmp_path, document).at_rest == ()
+    document["animations"] = [{"channels": [], "samplers": []}]
+    assert read(tmp_path, document).at_rest == ("animation",)
+    document["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": 0}]
+    assert read(tmp_path, document).at_rest == ("animation", "morph targets")
 
 
 def change(document: dict[str, Any], path: str, value: Any) -> None:

@@ -20,14 +20,6 @@ app = typer.Typer(
 )
 
 
-class Engine(StrEnum):
-    """Which engine draws."""
-
-    auto = "auto"
-    gpu = "gpu"
-    reference = "reference"
-
-
 class DepthKind(StrEnum):
     """What the numbers of a depth file are."""
 
@@ -36,8 +28,28 @@ class DepthKind(StrEnum):
     disparity = "disparity"
 
 
+ENGINES = ("auto", "gpu", "reference")
+
+
+def _engine(name: str) -> str:
+    from andon.errors import InputError
+
+    if name not in ENGINES:
+        raise InputError(
+            f"must be one of {', '.join(ENGINES)}, got {name!r}",
+            field="--engine",
+            remedy="gpu draws on every adapter with Vulkan, Metal or D3D12, whoever made it",
+        )
+    return name
+
+
 EngineOption = Annotated[
-    Engine, typer.Option(help="auto: the GPU where an adapter is found, else the reference.")
+    str,
+    typer.Option(
+        callback=_engine,
+        metavar="|".join(ENGINES),
+        help="auto: the GPU where an adapter is found, else the reference.",
+    ),
 ]
 
 
@@ -92,7 +104,7 @@ def relight(
     ] = None,
     view: Annotated[str | None, typer.Option(help="left or right of a stereo rig.")] = None,
     time: Annotated[float, typer.Option(help="Moment of the session, seconds.")] = 0.0,
-    engine: EngineOption = Engine.auto,
+    engine: EngineOption = "auto",
 ) -> None:
     """Relight a photograph with virtual lamps.
 
@@ -127,7 +139,7 @@ def relight(
             illuminance_maps=tuple(illuminance_map or ()),
             view=view,
             time_seconds=time,
-            engine=engine.value,
+            engine=engine,
         )
     )
 
@@ -136,7 +148,7 @@ def relight(
 def demo(
     name: Annotated[str, typer.Argument(help="photo: a real photograph, relit.")] = "photo",
     out: Annotated[Path, typer.Option(help="Folder for the pictures.")] = Path("andon-demo"),
-    engine: EngineOption = Engine.auto,
+    engine: EngineOption = "auto",
 ) -> None:
     """Run the demonstration: a real photograph with real geometry, two lamps put into it.
 
@@ -144,7 +156,7 @@ def demo(
     """
     from andon.cli.demo import run
 
-    run(name, out, engine.value)
+    run(name, out, engine)
 
 
 @app.command()

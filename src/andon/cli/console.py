@@ -33,8 +33,10 @@ def check_writable(path: Path, suffixes: tuple[str, ...], field: str) -> None:
         )
 
 
-def print_report(report: Report, setup_seconds: Mapping[str, float], pixels: int) -> None:
-    """Engine, stage times, holes and shadow geometry of a frame."""
+def print_report(
+    report: Report, setup_seconds: Mapping[str, float], pixels: int, depth: str | None = None
+) -> None:
+    """Engine, stage times, depths, holes and shadow geometry of a frame."""
     from rich.console import Console
     from rich.table import Table
 
@@ -43,6 +45,8 @@ def print_report(report: Report, setup_seconds: Mapping[str, float], pixels: int
     seconds: dict[str, Any] = {**setup_seconds, **report.stage_seconds}
     table.add_row("stages", " · ".join(f"{k} {v * 1e3:.0f} ms" for k, v in seconds.items()))
     table.add_row("photometry", report.photometry)
+    if depth is not None:  # the unit of a depth is mistaken more often than all else
+        table.add_row("depth", depth)
     table.add_row("holes", f"{report.hole_pixels / pixels:.1%} of the pixels get no added light")
     table.add_row("clipped", f"{report.clipped_pixels / pixels:.1%} of the photograph is clipped")
     if report.occluder_triangles:

@@ -50,9 +50,12 @@ def run(options: RelightOptions) -> None:
     for path in options.illuminance_maps:
         check_writable(path, (".exr", ".png"), "--illuminance-map")
     _refuse_overwriting(options)
+    from andon.cli.notes import depth_text, notes_on
     from andon.pipeline import Renderer
 
-    renderer = Renderer(scene_of(options), options.engine)  # type: ignore[arg-type]
+    scene = scene_of(options)
+    _check_view(scene, options.view)
+    renderer = Renderer(scene, options.engine)  # type: ignore[arg-type]
     frame = renderer.render(options.time_seconds, options.view)
     if options.scene is None and options.ambient_lux is None:
         note(
@@ -62,8 +65,10 @@ def run(options: RelightOptions) -> None:
     _write(options.out, frame.image.rgb, frame.luminance)
     for path in options.illuminance_maps:
         write_illuminance(path, frame.illuminance, frame.surface.valid)
-    pixels = frame.image.rgb.shape[0] * frame.image.rgb.shape[1]
-    print_report(frame.report, renderer.setup_seconds, pixels)
+    for line in notes_on(frame, renderer.prepared, options.time_seconds):
+        note(line)
+    pixels, depth = frame.surface.valid.size, depth_text(frame.surface)
+    print_report(frame.report, renderer.setup_seconds, pixels, depth)
     print(options.out)
 
 
@@ -79,6 +84,22 @@ def _refuse_overwriting(options: RelightOptions) -> None:
                 remedy="give it another name",
             )
         taken.add(path.resolve())
+
+
+def _check_view(scene: Any, view: str | None) -> None:
+    """Refuses a view that the rig has not, before any file is read."""
+    names = [name for name, _ in scene.rig.cameras] if scene.rig is not None else []
+    if view is None or not names or view in names:
+        return
+    if len(names) == 1:
+        remedy = "leave --view out; two eyes need a scene with [rig.left] and [rig.right]"
+    else:
+        remedy = f"give one of {' and '.join(names)}"
+    raise InputError(
+        f"there is no view {view!r}, this rig has {' and '.join(names)}",
+        field="--view",
+        remedy=remedy,
+    )
 
 
 def scene_of(options: RelightOptions) -> Any:

@@ -8,11 +8,13 @@
 @group(0) @binding(2) var curve: texture_2d<f32>;
 
 const SHOULDER_START: f32 = 0.6;
+// Light beyond half floats comes as infinity, and ∞/(1 + ∞) would be NaN: this is white as well.
+const LARGEST: f32 = 1e30;
 
 fn tone_curve(linear: vec3f) -> vec3f {
   if (display.tone == 0u) { return clamp(linear, vec3f(0.0), vec3f(1.0)); }
   let width = 1.0 - SHOULDER_START;
-  let over = max(linear - SHOULDER_START, vec3f(0.0)) / width;
+  let over = clamp((linear - SHOULDER_START) / width, vec3f(0.0), vec3f(LARGEST));
   return select(max(linear, vec3f(0.0)), SHOULDER_START + width * over / (1.0 + over), linear > vec3f(SHOULDER_START));
 }
 

@@ -14,6 +14,10 @@ Rgb = NDArray[np.uint8]
 
 BAR_WIDTH_PX = 74
 CAPTION_PX = 22
+# Above the scale there is room for a line with the unit, below for half of the last label.
+ABOVE_PX, BELOW_PX = 28, 10
+# Height of a label of 12 px, with the air that keeps it apart from the next.
+LABEL_PX = 15
 INK, PAPER = (32, 32, 32), (245, 243, 238)
 HOLE = (60, 60, 60)
 # Decades below the maximum that the scale shows: two are what a lit room spans.
@@ -34,11 +38,12 @@ def false_colour(
     import cv2
 
     shown = values if valid is None else values[valid]
+    shown = shown[np.isfinite(shown)]
     # The 99.5th percentile: one pixel under a bulb would else push the room into one colour.
     top = float(np.percentile(shown, 99.5)) if shown.size else 1.0
     top = _round_up(max(top, 1e-6))
     share = np.log10(np.maximum(values, 1e-12) / top) / DECADES + 1
-    codes = np.clip(np.nan_to_num(share) * 255, 0, 255).astype(np.uint8)
+    codes = (np.clip(np.nan_to_num(share), 0, 1) * 255).astype(np.uint8)
     picture = np.asarray(cv2.applyColorMap(codes, cv2.COLORMAP_INFERNO), np.uint8)[..., ::-1].copy()
     if valid is not None:
         picture[~valid] = HOLE
@@ -55,17 +60,21 @@ def _bar(height: int, top: float, unit: str) -> Rgb:
     import cv2
     from PIL import Image, ImageDraw, ImageFont
 
-    margin = min(16, (height - 1) // 2)
-    rows = np.linspace(255, 0, height - 2 * margin)[:, None].repeat(16, axis=1).astype(np.uint8)
+    # Where the scale would have less than half of the height there is no unit.
+    top_px = ABOVE_PX if height >= 2 * (ABOVE_PX + BELOW_PX) else min(BELOW_PX, (height - 1) // 2)
+    length = height - top_px - min(BELOW_PX, (height - 1) // 2)
+    rows = np.linspace(255, 0, length)[:, None].repeat(16, axis=1).astype(np.uint8)
     image = Image.new("RGB", (BAR_WIDTH_PX, height), PAPER)
     colours = np.asarray(cv2.applyColorMap(rows, cv2.COLORMAP_INFERNO), np.uint8)[..., ::-1]
-    image.paste(Image.fromarray(np.ascontiguousarray(colours)), (8, margin))
+    image.paste(Image.fromarray(np.ascontiguousarray(colours)), (8, top_px))
     draw, font = ImageDraw.Draw(image), ImageFont.load_default(size=12)
-    for power in np.arange(0, DECADES + 0.01, 0.5):
-        y = margin + power / DECADES * (height - 2 * margin - 1)
+    steps = [step for step in (0.5, 1.0, DECADES) if step / DECADES * (length - 1) >= LABEL_PX]
+    for power in np.arange(0, DECADES + 0.01, steps[0] if steps else 2 * DECADES):
+        y = top_px + power / DECADES * (length - 1)
         draw.line([(24, y), (28, y)], fill=INK)
         draw.text((30, y), f"{float(f'{top / 10**power:.2g}'):g}", fill=INK, font=font, anchor="lm")
-    draw.text((8, 8), unit, fill=INK, font=font, anchor="lm")
+    if top_px == ABOVE_PX:
+        draw.text((8, 10), unit, fill=INK, font=font, anchor="lm")
     return np.asarray(image)
 
 

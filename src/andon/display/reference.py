@@ -14,6 +14,8 @@ __all__ = ["SHOULDER_START", "encode", "tone_curve"]
 
 # Below this share of white the shoulder is the identity, so that most of a picture is untouched.
 SHOULDER_START = 0.6
+# White to the last bit in either precision, and finite in both: ∞/(1 + ∞) would be NaN.
+LARGEST = 1e30
 
 
 def tone_curve(linear: NDArray[Any], tone: str, /) -> NDArray[Any]:
@@ -24,7 +26,8 @@ def tone_curve(linear: NDArray[Any], tone: str, /) -> NDArray[Any]:
     """
     if tone == "none":
         return np.clip(linear, 0, 1)
-    over = np.maximum(linear - SHOULDER_START, 0) / (1 - SHOULDER_START)
+    # Half floats end at 65504; what is beyond comes as infinity, and is white.
+    over = np.clip((linear - SHOULDER_START) / (1 - SHOULDER_START), 0, LARGEST)
     bent = SHOULDER_START + (1 - SHOULDER_START) * over / (1 + over)
     return np.where(linear > SHOULDER_START, bent, np.maximum(linear, 0))
 

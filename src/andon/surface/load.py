@@ -60,7 +60,7 @@ def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
 
     Raises `InputError` for files that are missing, of the wrong size or without geometry.
     """
-    objects, casters = _objects(scene)
+    objects = _objects(scene)
     if scene.surface is None:
         model = SurfaceModel()
     elif scene.surface.depth is not None:
@@ -84,7 +84,13 @@ def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
             )
         normals = {name: _read_normals(scene, view) for name, view in views.items()}
         model = SurfaceModel(normals=normals)
-    return replace(model, objects=objects, casters=casters)
+    return replace(
+        model,
+        objects=objects.objects,
+        casters=objects.casters,
+        object_triangles=objects.object_triangles,
+        notes=(*model.notes, *objects.notes),
+    )
 
 
 def _from_depth(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
@@ -176,12 +182,13 @@ def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
     world_from_mesh = np.eye(4)
     if scene.surface.world_from_mesh is not None:
         world_from_mesh = np.array(scene.surface.world_from_mesh)
-    real = _read_geometry(scene, path, world_from_mesh)
+    real, notes = _read_geometry(scene, path, world_from_mesh)
     if scene.surface.reflectance is not None:
         real = _with_reflectance(real, scene.surface.reflectance)
     _check_textures(real, scene, "surface.mesh")
     budget = scene.surface.occluder_triangles
-    return surface_of_mesh(real, view.position, occluder_triangles=budget)
+    model = surface_of_mesh(real, view.position, occluder_triangles=budget)
+    return replace(model, notes=notes)
 
 
 def _bias(real_m: float) -> ShadowBias:
@@ -194,14 +201,22 @@ def _with_reflectance(geometry: Geometry, reflectance: Any) -> Geometry:
     return replace(geometry, materials=(material,), material_ids=None)
 
 
-def _read_geometry(scene: Scene, path: Path, world_from_mesh: Float) -> Geometry:
-    geometry = read_mesh(path).geometry
+def _read_geometry(
+    scene: Scene, path: Path, world_from_mesh: Float
+) -> tuple[Geometry, tuple[str, ...]]:
+    """The triangles of a file in the world, and what is to be said of them."""
+    mesh = read_mesh(path)
+    geometry = mesh.geometry
+    notes: tuple[str, ...] = ()
+    if mesh.at_rest:
+        what = " and ".join(mesh.at_rest)
+        notes = (f"{path.name} has {what}: it is drawn in its pose of rest, and does not move",)
     if path.suffix.lower() in UNITLESS_SUFFIXES:
         scale = np.eye(4)
         scale[:3, :3] = np.eye(3) if scene.scene.up == "y" else Y_UP_FROM_Z_UP
         scale[:3, :3] *= scene.scene.metres_per_unit
         world_from_mesh = world_from_mesh @ scale
-    return with_linear_textures(_placed(geometry, world_from_mesh))
+    return with_linear_textures(_placed(geometry, world_from_mesh)), notes
 
 
 def _placed(geometry: Geometry, world_from_mesh: Float) -> Geometry:
@@ -219,6 +234,11 @@ def _placed(geometry: Geometry, world_from_mesh: Float) -> Geometry:
 
 def object_geometry(scene: Scene, index: int, /) -> Geometry:
     """The triangles of ``scene.object[index]`` in the world."""
+    return _object(scene, index)[0]
+
+
+def _object(scene: Scene, index: int) -> tuple[Geometry, tuple[str, ...]]:
+    """Its triangles in the world, and what is to be said of them."""
     entry = scene.object[index]
     field = f"object[{index}]"
     for key in ("animation", "key"):
@@ -233,11 +253,12 @@ def object_geometry(scene: Scene, index: int, /) -> Geometry:
     return _read_geometry(scene, path, entry.world_from_object())
 
 
-def _objects(scene: Scene) -> tuple[Geometry, Geometry]:
+def _objects(scene: Scene) -> SurfaceModel:
     """All virtual objects as one geometry with their materials, and those that cast shadows."""
-    parts = [object_geometry(scene, index) for index in range(len(scene.object))]
+    read = [_object(scene, index) for index in range(len(scene.object))]
+    parts = [geometry for geometry, _ in read]
     if not parts:
-        return EMPTY_GEOMETRY, EMPTY_GEOMETRY
+        return SurfaceModel()
     casting = [p for p, entry in zip(parts, scene.object, strict=True) if entry.casts_shadow]
     objects = _emitting_first(joined(parts))
     _check_textures(objects, scene, "object")
@@ -249,7 +270,19 @@ def _objects(scene: Scene) -> tuple[Geometry, Geometry]:
             field="object",
             remedy="let parts share materials, or leave objects out",
         )
-    return objects, merged(*casting) if casting else EMPTY_GEOMETRY
+    names = [
+        entry.name if "name" in entry.model_fields_set else f"object[{index}]"
+        for index, entry in enumerate(scene.object)
+    ]
+    return SurfaceModel(
+        objects=objects,
+        casters=merged(*casting) if casting else EMPTY_GEOMETRY,
+        object_triangles=tuple(
+            (name, len(part.triangles)) for name, part in zip(names, parts, strict=True)
+        ),
+        # One file may stand in several places.
+        notes=tuple(dict.fromkeys(note for _, notes in read for note in notes)),
+    )
 
 
 def _emitting_first(geometry: Geometry) -> Geometry:

@@ -46,6 +46,9 @@ class SurfaceModel:
     occluder : what the real geometry's shadows are cast by (decimated).
     casters : what the virtual objects' shadows are cast by.
     bias : see `ShadowBias`.
+    object_triangles : name of each virtual object and how many of `objects.triangles` are its own,
+        in their order.
+    notes : what a reader of files wants said to whoever looks at the picture.
     """
 
     real: Geometry = EMPTY_GEOMETRY
@@ -57,6 +60,8 @@ class SurfaceModel:
     occluder: Occluder = field(default_factory=lambda: Occluder(EMPTY_GEOMETRY, 0, 0.0))
     casters: Geometry = EMPTY_GEOMETRY
     bias: ShadowBias = field(default_factory=ShadowBias)
+    object_triangles: tuple[tuple[str, int], ...] = ()
+    notes: tuple[str, ...] = ()
 
     @cached_property
     def shadow_casters(self) -> Geometry:

@@ -48,8 +48,11 @@ class MeshFile:
         (glTF's are). Texture coordinates have v down. Degenerate triangles are kept.
     lights : lights in the file (glTF only).
     names : objects and groups (OBJ) or nodes (glTF) in the order of the file.
+    at_rest : what of it would move, and does not: ``skin``, ``animation``, ``morph targets``
+        (glTF only).
     """
 
     geometry: Geometry
     lights: tuple[MeshLight, ...] = ()
     names: tuple[str, ...] = ()
+    at_rest: tuple[str, ...] = ()

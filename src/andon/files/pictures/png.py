@@ -58,7 +58,12 @@ def decode_png_raw(data: bytes, file: str, limits: Limits = DEFAULT_LIMITS) -> N
     """The stored numbers of a gray PNG, (H, W) uint8 or uint16, for depth; colour is refused."""
     header = _check_chunks(data, file, limits)["IHDR"]
     if header[9] not in (0, 4):
-        raise InputError("must be a gray PNG, this one has colour", file=file)
+        raise InputError(
+            "must be a gray PNG, whose numbers are depths; this one has colour",
+            file=file,
+            remedy="a photograph or a false-colour picture holds no depth: export the depth "
+            "itself, as 16-bit gray PNG, NPY, PFM or EXR",
+        )
     if header[8] == 16:
         values = _decode_16bit(data, file)
         return values if values.ndim == 2 else values[..., 0]

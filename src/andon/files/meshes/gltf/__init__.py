@@ -63,7 +63,21 @@ def read_gltf(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> MeshFile:
         _merge(parts, materials, str(path), limits.max_vertices),
         tuple(light for light in lights if light is not None),
         tuple(node.name for node in nodes),
+        _at_rest(document, nodes),
     )
+
+
+def _at_rest(document: Document, nodes: list[PlacedNode]) -> tuple[str, ...]:
+    """What would move in a player and stands still here."""
+    drawn = [node for node in nodes if node.entry.get("mesh") is not None]
+    meshes = [document.entry("meshes", node.entry.at("mesh")) for node in drawn]
+    primitives = [part for mesh in meshes for part in mesh.at("primitives").elements()]
+    found = {
+        "skin": any(node.entry.get("skin") is not None for node in drawn),
+        "animation": bool(document.root.list_of("animations")),
+        "morph targets": any(part.get("targets") is not None for part in primitives),
+    }
+    return tuple(name for name, is_there in found.items() if is_there)
 
 
 class _Collector:

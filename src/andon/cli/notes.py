@@ -1,0 +1,147 @@
+"""What is worth saying after a frame that was drawn, but perhaps not as it was meant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+from andon.engines.prepared import Prepared
+from andon.lamps import Lamp, SpotLamp
+from andon.pipeline import Frame
+from andon.quantities import Surface
+from andon.rays import RayScene
+from andon.surface.model import SurfaceModel
+
+__all__ = ["depth_text", "notes_on"]
+
+# Above this, shadows at the contacts of everyday things (feet, cups, books) are gone.
+LARGE_LIFT_M = 0.02
+# Median depths that no room and no street has: millimetres or disparities taken for metres.
+LIKELY_DEPTHS_M = (0.05, 200.0)
+# Of pixels at which a lamp's light is looked for first; all of them only where there is none.
+SPARSE = 7
+# Fields of lamps that say how much light there is.
+LIGHT_UNITS = ("_cd", "_lux", "_cd_m2")
+
+
+def notes_on(frame: Frame, prepared: Prepared, time_seconds: float) -> list[str]:
+    """One line each: what was found, and what can be done about it."""
+    surface, model = frame.surface, prepared.surface
+    return [
+        *model.notes,
+        *_on_depth(surface),
+        *_on_objects(surface, model),
+        *_on_lamps(surface, prepared, prepared.lamps(time_seconds)),
+        *_on_lift(model),
+    ]
+
+
+def depth_text(surface: Surface) -> str | None:
+    """Range and median of the real surface; None where it has no depth."""
+    depth = surface.depth[surface.valid & ~surface.is_object]
+    depth = depth[np.isfinite(depth)]
+    if not len(depth):
+        return None
+    low, middle, high = (_metres(float(value)) for value in np.percentile(depth, [0, 50, 100]))
+    word = "" if surface.view.projection == "pinhole" else ", along the rays"
+    return f"{low} to {high} m, median {middle} m{word}"
+
+
+def _metres(value: float) -> str:
+    return f"{value:.0f}" if value >= 100 else f"{value:.2f}" if value >= 0.1 else f"{value:.2g}"
+
+
+def _on_depth(surface: Surface) -> list[str]:
+    depth = surface.depth[surface.valid & ~surface.is_object]
+    middle = float(np.median(depth)) if len(depth) else float("nan")
+    low, high = LIKELY_DEPTHS_M
+    if not middle < low and not middle > high:  # NaN: normals alone
+        return []
+    return [
+        f"the median depth is {_metres(middle)} m: check the unit of the depth or mesh "
+        "(depth in millimetres: --depth-scale-to-m 0.001 or scale_to_m = 0.001)"
+    ]
+
+
+def _on_objects(surface: Surface, model: SurfaceModel) -> list[str]:
+    """Objects without a pixel."""
+    names = [name for name, _ in model.object_triangles]
+    if not names:
+        return []
+    ends = np.cumsum([count for _, count in model.object_triangles])
+    seen: set[int] = set()
+    if surface.is_object.any():
+        origin, directions = surface.view.rays_world()
+        rays = directions[surface.is_object]
+        hits = RayScene(model.objects).first_hits(np.broadcast_to(origin, rays.shape), rays)
+        met = hits.triangle[hits.triangle >= 0]
+        seen = set(np.searchsorted(ends, met, side="right").tolist())
+    notes: list[str] = []
+    for index, name in enumerate(names):
+        if index not in seen:
+            part = model.objects.triangles[slice(ends[index - 1] if index else 0, ends[index])]
+            where = _where(model.objects.positions[part].reshape(-1, 3), surface)
+            notes.append(f"the object {name!r} covers no pixel: {where}; check position and scale")
+    return notes
+
+
+def _where(points: Any, surface: Surface) -> str:
+    """Of points (n, 3) of which no pixel shows any."""
+    view = surface.view
+    local = points @ view.camera_from_world[:3, :3].T + view.camera_from_world[:3, 3]
+    x, y, z = points.mean(axis=0) + 0.0005  # no −0.00
+    place = f"around ({x:.2f}, {y:.2f}, {z:.2f})"
+    if view.projection == "pinhole" and (local[:, 2] <= 0).all():
+        return f"it stands {place}, behind the camera"
+    pixels = view.project(local)
+    size = (view.width - 0.5, view.height - 0.5)
+    inside = ((pixels >= -0.5) & (pixels <= size)).all(axis=-1)
+    if not inside.any():
+        return f"it stands {place}, beside the picture"
+    return f"it stands {place}, hidden by what is before it, or smaller than a pixel"
+
+
+def _on_lamps(surface: Surface, prepared: Prepared, lamps: Sequence[Lamp]) -> list[str]:
+    """Lamps that add nothing to any pixel."""
+    if not lamps or not surface.valid.any():
+        return []
+    from andon.engines.reference import ReferenceEngine
+
+    engine = ReferenceEngine(prepared)
+    rows, columns = np.indices(surface.valid.shape)
+    sparse = replace(surface, valid=surface.valid & ((rows + 3 * columns) % SPARSE == 0))
+
+    def lights(lamp: Lamp) -> bool:
+        return any(bool((engine.illuminate(s, [lamp]).lux > 0).any()) for s in (sparse, surface))
+
+    return [
+        f"the lamp {lamp.name!r} adds no light: {_why_dark(lamp, lights)}"
+        for lamp in lamps
+        if not lights(lamp)
+    ]
+
+
+def _why_dark(lamp: Lamp, lights: Any) -> str:
+    values = [getattr(lamp, f.name) for f in fields(lamp) if f.name.endswith(LIGHT_UNITS)]
+    if values and not np.any(np.concatenate([np.ravel(value) for value in values])):
+        return "0 is stated of it"
+    if getattr(lamp, "shadow", None) is not None:
+        free: Any = lamp
+        if lights(replace(free, shadow=None)):
+            return "all that faces it lies in shadow; move it, or state shadow = false"
+    cone = " within its cone" if isinstance(lamp, SpotLamp) else ""
+    return f"nothing that the camera sees faces it{cone}; move or turn it"
+
+
+def _on_lift(model: SurfaceModel) -> list[str]:
+    lift = model.bias.real_m
+    if lift <= LARGE_LIFT_M:
+        return []
+    kept, before = len(model.occluder.geometry.triangles), model.occluder.triangles_before
+    return [
+        f"shadows thinner than {lift * 1e3:.0f} mm are lost, since {kept} of {before} triangles "
+        "cast them; more in [surface] occluder_triangles keep them (0: all)"
+    ]

@@ -185,7 +185,7 @@ def _alcove() -> list[Part]:
     deep, high = NORTH - north, top - floor
     return [
         box("lacquer", (west, 0.0, NORTH - 0.10), (east, floor, NORTH + 0.0)),
-        quad("wood.zelkova", (west, floor, NORTH - 0.10), (east - west, 0, 0), (0, 0, 0.10 - deep)),
+        box("wood.zelkova", (west, 0, north), (east, floor, NORTH - 0.10), sides="+y"),
         quad("plaster.moss", (west, floor, north), (east - west, 0, 0), (0, high, 0)),
         quad("plaster.moss", (west, floor, NORTH), (0, 0, -deep), (0, high, 0)),
         quad("plaster.moss", (east, floor, north), (0, 0, deep), (0, high, 0)),

@@ -34,15 +34,15 @@ from tatami.building import SHOJI_HIGH, SHOJI_LOW, shoji_sheets
 Float = NDArray[np.float64]
 
 LUMENS_PER_WATT = 179.0  # Radiance's own
-SHOJI_CD_M2, LAMP_CD_M2 = 290.0, 1150.0
+SHOJI_CD_M2, LAMP_CD_M2 = 180.0, 3400.0
 SHOJI_RGB = factors_from_temperature(6300.0, daylight=True)
 LAMP_RGB = factors_from_temperature(4300.0)
 # The lattice covers this share of the paper.
 LATTICE_SHARE = 0.09
 LAMP_HALF, LAMP_LOW, LAMP_HIGH = 0.238, 2.125, 2.265
 DIRECT = "-ab 0 -ds 0.25 -dj 0 -dt 0 -dc 1 -dr 0"
-BOUNCE = "-ab {} -ds 0 -dj 0 -dt 0 -dc 1 -dr 0 -ad 2048 -as 512 -aa 0.08 -ar 160 -lw 1e-4 -lr 6"
-BOUNCES = 4
+BOUNCE = "-ab {} -ds 0 -dj 0 -dt 0 -dc 1 -dr 0 -ad 700 -as 200 -aa 0.18 -ar 32 -lw 2e-3 -lr 6"
+BOUNCES = 3
 
 
 @dataclass(frozen=True)
@@ -63,9 +63,9 @@ def illuminance(geometry: Geometry, points: Float, normals: Float, order: NDArra
     """
     outer = ("paper.shoji", "lattice")
     rays = np.concatenate([points, normals], axis=1)
-    sheets = _run(geometry, outer, shoji_patches(96), DIRECT, rays)
-    lamp = _run(geometry, (), lamp_patches(100, 14), DIRECT, rays)
-    few = [_shrunk(patch) for patch in shoji_patches(6) + lamp_patches(2, 1)]
+    sheets = _run(geometry, outer, shoji_patches(36), DIRECT, rays)
+    lamp = _run(geometry, (), lamp_patches(48, 3), DIRECT, rays)
+    few = [_shrunk(patch) for patch in shoji_patches(2) + lamp_patches(1, 1)[:1]]
     asked = np.concatenate([rays[order], rays])
     total = _run(geometry, ("lattice",), few, BOUNCE.format(BOUNCES), asked)[len(order) :]
     direct = _run(geometry, ("lattice",), few, BOUNCE.format(0), rays)

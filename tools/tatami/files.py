@@ -54,6 +54,8 @@ def write_room(path: Path, parts: list[Part], textures: dict[str, bytes]) -> int
         "textures": [{"source": k} for k in range(len(images))],
         "images": stored,
     }
+    if not images:
+        del document["textures"], document["images"]
     document |= {
         "accessors": blob.accessors,
         "bufferViews": blob.views,

@@ -30,6 +30,7 @@ LOOKS: dict[str, Look] = {
     "plaster.sand": Look((0.86, 0.76, 0.57), "plaster"),
     "plaster.moss": Look((0.62, 0.64, 0.47), "plaster"),
     "paper.shoji": Look((0.66, 0.66, 0.64), "paper"),
+    "frame": Look((0.12, 0.072, 0.046)),
     "lattice": Look((0.62, 0.48, 0.32)),
     "landscape": Look((0.92, 0.92, 0.92), "landscape"),
     "scroll": Look((1.0, 1.0, 1.0), "scroll"),

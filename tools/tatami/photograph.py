@@ -9,11 +9,15 @@ that is the illuminance in which paper without daylight behind it would look the
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.files.cameras import write_camera
+from andon.files.pictures import write_png
 from andon.quantities import Geometry
+from andon.responses import srgb_encode
 from andon.spaces import View
 from tatami.daylight import SHOJI_CD_M2, SHOJI_RGB, illuminance
 from tatami.textures import noise
@@ -22,6 +26,8 @@ from tatami.tracing import GRID, Samples, Tracer
 Float = NDArray[np.float64]
 # Every so many pixels, first: see daylight.illuminance.
 OVERTURE_PX = 6
+# The exposure: cd/m² of linear value 1.
+LUMINANCE_PER_UNIT = 200.0
 
 
 @dataclass(frozen=True)
@@ -58,6 +64,33 @@ def photograph(geometry: Geometry, view: View) -> Photograph:
     reflectance = _summed(needs.pixel, needs.reflectance, count) / rays
     shape = (*view.shape, 3)
     return Photograph(luminance.reshape(shape), (np.pi * luminance / reflectance).reshape(shape))
+
+
+def write_photograph(folder: Path, picture: Photograph, view: View) -> None:
+    """photo.png, e0.exr and camera.toml."""
+    light = picture.luminance / LUMINANCE_PER_UNIT
+    # Rounded up or down by chance, so that no steps show where the dark is brightened.
+    chance = np.random.default_rng(77).random(light.shape)
+    codes = np.floor(np.clip(srgb_encode(np.minimum(light, 1)), 0, 1) * 255 + chance)
+    write_png(folder / "photo.png", np.clip(codes, 0, 255).astype(np.uint8))
+    _write_half(folder / "e0.exr", picture.e0)
+    write_camera(folder / "camera.toml", view)
+
+
+def _write_half(path: Path, lux: Float) -> None:
+    """Three half-float channels; 9 of 11 bits are kept, 0.1 %, which compress better."""
+    import OpenEXR
+
+    power = 2.0 ** (np.floor(np.log2(lux)) - 8)
+    values = (np.round(lux / power) * power).astype(np.float16)
+    header = {
+        "compression": OpenEXR.ZIP_COMPRESSION,
+        "type": OpenEXR.scanlineimage,
+        "andon:unit": "lx",
+        "andon:photometry": "absolute",
+    }
+    planes = {name: np.ascontiguousarray(values[..., k]) for k, name in enumerate("RGB")}
+    OpenEXR.File(header, planes).write(str(path))
 
 
 def _needs(samples: Samples, paper: int) -> _Needs:

@@ -53,12 +53,13 @@ def _table() -> list[Part]:
     return [board, *(part.moved(TABLE, yaw_degrees=20) for part in parts[1:])]
 
 
-def _cushion(side: float = 0.56, thick: float = 0.075, cells: int = 22) -> Part:
+def _cushion(side: float = 0.56, thick: float = 0.10, cells: int = 26) -> Part:
     """A zabuton: two puffed squares sewn at the edge, with a tuft in the middle."""
-    s = np.sin(np.linspace(-np.pi / 2, np.pi / 2, cells + 1))  # finer towards the seams
+    s = np.linspace(-1, 1, cells + 1)
+    s = (s + np.sin(np.pi / 2 * s)) / 2  # finer towards the seams
     x, z = np.meshgrid(s, s)
-    puff = ((1 - x**4) * (1 - z**4)) ** 0.55
-    tuft = 1 - 0.38 * np.exp(-(x**2 + z**2) / 0.012)
+    puff = ((1 - x**4) * (1 - z**4)) ** 0.65
+    tuft = 1 - 0.34 * np.exp(-(x**2 + z**2) / 0.02)
     pinch = 1 - 0.035 * (np.cos(np.pi * x / 2) + np.cos(np.pi * z / 2))
     height = thick / 2 * puff * tuft
     grid = np.stack([x * side / 2 * pinch, height, z * side / 2 * pinch], -1).reshape(-1, 3)

@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from andon.files.meshes import read_mesh
 from tatami import camera
 from tatami.building import assembled, building
 from tatami.files import write_room
@@ -20,6 +19,8 @@ from tatami.lanterns import write_lanterns
 from tatami.materials import texture_files
 from tatami.photograph import photograph, write_photograph
 from tatami.things import things
+
+from andon.files.meshes import read_mesh
 
 
 def main() -> None:

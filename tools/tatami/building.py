@@ -113,9 +113,7 @@ def _shoji() -> list[Part]:
         for low, high in ((outer[0], sheet.north), (sheet.south, outer[1])):
             parts.append(box("wood.cypress", (back, 0.004, low), (front, 1.735, high)))
         for low, high in ((0.004, 0.06), (0.325, SHOJI_LOW), (SHOJI_HIGH, 1.735)):
-            parts.append(
-                box("wood.cypress", (back, low, sheet.north), (front, high, sheet.south))
-            )
+            parts.append(box("wood.cypress", (back, low, sheet.north), (front, high, sheet.south)))
         parts.append(
             box("wood.cedar", (back, 0.06, sheet.north), (sheet.x, 0.325, sheet.south), sides="+x")
         )
@@ -138,7 +136,10 @@ def _lattice(sheet: Sheet) -> list[Part]:
         low, high = (sheet.x, SHOJI_LOW, z - half), (sheet.x + deep, SHOJI_HIGH, z + half)
         bars.append(box("lattice", low, high, sides="+x +z -z"))
     for y in np.linspace(SHOJI_LOW, SHOJI_HIGH, 8)[1:-1]:
-        low, high = (sheet.x, y - half, sheet.north), (sheet.x + deep - 0.001, y + half, sheet.south)
+        low, high = (
+            (sheet.x, y - half, sheet.north),
+            (sheet.x + deep - 0.001, y + half, sheet.south),
+        )
         bars.append(box("lattice", low, high, sides="+x +y -y"))
     return bars
 
@@ -151,11 +152,11 @@ def _north(width: float = 1.74) -> list[Part]:
         box("wood.cypress", (west, -0.05, front - 0.03), (west + width, 0.006, front + 0.02)),
         box("wood.cypress", (west, 1.735, front - 0.03), (west + width, LINTEL, front + 0.02)),
     ]
-    for number, (left, right) in enumerate(((west, middle + 0.012), (middle - 0.012, west + width))):
+    for number, (left, right) in enumerate(
+        ((west, middle + 0.012), (middle - 0.012, west + width))
+    ):
         z = front + (0.0, -0.022)[number]
-        door = picture(
-            "landscape", (left, 0.006, z), (right - left, 0, 0), (0, 1.729, 0)
-        )
+        door = picture("landscape", (left, 0.006, z), (right - left, 0, 0), (0, 1.729, 0))
         share = np.array([(left - west) / width, (right - west) / width])
         parts.append(replace(door, uvs=np.stack([share[[0, 1, 1, 0]], door.uvs[:, 1]], -1)))
         edge = 0.018
@@ -212,7 +213,9 @@ def _shelves() -> list[Part]:
 def _walls() -> list[Part]:
     south, length = HALL, HALL - NORTH
     return [
-        quad("plaster.sand", (WEST, LINTEL, SOUTH), (0, 0, NORTH - SOUTH), (0, CEILING - LINTEL, 0)),
+        quad(
+            "plaster.sand", (WEST, LINTEL, SOUTH), (0, 0, NORTH - SOUTH), (0, CEILING - LINTEL, 0)
+        ),
         quad("plaster.sand", (WEST, 0, south), (0, 0, SOUTH - south), (0, CEILING, 0)),
         quad("plaster.sand", (EAST, 0, NORTH), (0, 0, length), (0, CEILING, 0)),
         quad("plaster.sand", (EAST, 0, south), (WEST - EAST, 0, 0), (0, CEILING, 0)),
@@ -245,7 +248,9 @@ def _frame() -> list[Part]:
         box("wood.cypress", (WEST + half, low, NORTH), (ALCOVE_WEST - 0.08, high, NORTH + 0.04)),
         box("wood.cypress", (EAST - 0.035, low, NORTH + half), (EAST, high, SOUTH - half)),
         box("wood.cypress", (WEST + half, LINTEL, SOUTH - 0.05), (EAST - half, 1.90, SOUTH + 0.05)),
-        box("plaster.sand", (WEST, 1.90, SOUTH - 0.03), (EAST, CEILING, SOUTH + 0.03), sides="+z -z"),
+        box(
+            "plaster.sand", (WEST, 1.90, SOUTH - 0.03), (EAST, CEILING, SOUTH + 0.03), sides="+z -z"
+        ),
     ]
     return parts
 

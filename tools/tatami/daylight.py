@@ -55,7 +55,9 @@ class Patch:
     luminance: Float
 
 
-def illuminance(geometry: Geometry, points: Float, normals: Float, order: NDArray[np.int64]) -> Float:
+def illuminance(
+    geometry: Geometry, points: Float, normals: Float, order: NDArray[np.int64]
+) -> Float:
     """(n, 3) lx at points (n, 3) that face normals (n, 3).
 
     `order` are the indices of points that are asked first for bounced light, so that the values
@@ -78,7 +80,10 @@ def shoji_patches(count: int) -> list[Patch]:
     patches: list[Patch] = []
     for number, sheet in enumerate(shoji_sheets()):
         corner = np.array([sheet.x + 0.0005, SHOJI_LOW, sheet.south])
-        along, up = np.array([0, 0, sheet.north - sheet.south]), np.array([0, SHOJI_HIGH - SHOJI_LOW, 0])
+        along, up = (
+            np.array([0, 0, sheet.north - sheet.south]),
+            np.array([0, SHOJI_HIGH - SHOJI_LOW, 0]),
+        )
         whole = Patch(corner, along, up, luminance)
         patches += _cut(whole, count, np.random.default_rng(number))
     return patches
@@ -89,8 +94,14 @@ def lamp_patches(below: int, sides: int) -> list[Patch]:
     h, high = LAMP_HALF, LAMP_HIGH - LAMP_LOW
     luminance = LAMP_CD_M2 * LAMP_RGB
     up = np.array([0, high, 0])
-    corners = [np.array(p, float) for p in ((-h, LAMP_LOW, h), (h, LAMP_LOW, h), (h, LAMP_LOW, -h), (-h, LAMP_LOW, -h))]
-    around = [Patch(a, b - a, up, luminance) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
+    corners = [
+        np.array(p, float)
+        for p in ((-h, LAMP_LOW, h), (h, LAMP_LOW, h), (h, LAMP_LOW, -h), (-h, LAMP_LOW, -h))
+    ]
+    around = [
+        Patch(a, b - a, up, luminance)
+        for a, b in zip(corners, corners[1:] + corners[:1], strict=True)
+    ]
     floor = Patch(corners[3], np.array([2 * h, 0, 0]), np.array([0, 0, 2 * h]), luminance)
     generator = np.random.default_rng(9)
     patches = _cut(floor, below, generator)
@@ -112,7 +123,9 @@ def _cut(patch: Patch, count: int, generator: np.random.Generator) -> list[Patch
         parts = (Patch(patch.corner, a, b * share, patch.luminance),)
         parts += (Patch(patch.corner + b * share, a, b * (1 - share), patch.luminance),)
     counts = (count // 2, count - count // 2)
-    return [piece for part, n in zip(parts, counts, strict=True) for piece in _cut(part, n, generator)]
+    return [
+        piece for part, n in zip(parts, counts, strict=True) for piece in _cut(part, n, generator)
+    ]
 
 
 def _shrunk(patch: Patch, side: float = 0.012) -> Patch:

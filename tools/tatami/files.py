@@ -42,7 +42,9 @@ def write_room(path: Path, parts: list[Part], textures: dict[str, bytes]) -> int
     """One primitive a part; returns the number of triangles."""
     blob = _Blob()
     images = list(textures)
-    stored = [{"bufferView": blob.view(textures[name]), "mimeType": "image/jpeg"} for name in images]
+    stored = [
+        {"bufferView": blob.view(textures[name]), "mimeType": "image/jpeg"} for name in images
+    ]
     names = list(dict.fromkeys(part.material for part in parts))
     document = {
         "asset": {"version": "2.0", "generator": "Andon tools/make_tatami_room.py"},

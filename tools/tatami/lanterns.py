@@ -19,7 +19,7 @@ from tatami.shapes import Part, box, joined
 Float = NDArray[np.float64]
 Faces = NDArray[np.int64]
 
-# The andon: half of its width, and its paper's ends below and above the bulb; 0.27 m above the mats.
+# The andon: half of its width, its paper's ends below and above the bulb, the bulb above the mats.
 HALF, BELOW, ABOVE, FEET = 0.130, 0.165, 0.205, 0.27
 POST, GAP = 0.014, 0.001
 PANE = (6, 8)
@@ -91,6 +91,8 @@ def _write_chochin(folder: Path, source: Path) -> None:
             text.append("mtllib chochin.mtl" if line.startswith("mtllib") else line)
     (folder / "chochin.obj").write_text("\n".join(text) + "\n", encoding="utf-8")
     material = (source / "JapaneseLantern.mtl").read_text(encoding="utf-8")
-    material = material.replace("JapaneseLantern.jpg", "chochin.jpg").replace("JapaneseLantern.mtl", "chochin.mtl")
+    material = material.replace("JapaneseLantern.jpg", "chochin.jpg").replace(
+        "JapaneseLantern.mtl", "chochin.mtl"
+    )
     (folder / "chochin.mtl").write_text(material.rstrip() + "\n", encoding="utf-8")
     shutil.copyfile(source / "JapaneseLantern.jpg", folder / "chochin.jpg")

@@ -54,7 +54,9 @@ def photograph(geometry: Geometry, view: View) -> Photograph:
     tracer = Tracer(geometry)
     paper = [m.name for m in geometry.materials].index("paper.shoji")
     bands = [_needs(samples, paper) for samples in tracer.bands(view)]
-    needs = _Needs(*(np.concatenate([getattr(b, k) for b in bands]) for k in _Needs.__annotations__))
+    needs = _Needs(
+        *(np.concatenate([getattr(b, k) for b in bands]) for k in _Needs.__annotations__)
+    )
     row, column = np.divmod(needs.pixel, view.width)
     first = np.flatnonzero((row % OVERTURE_PX == 0) & (column % OVERTURE_PX == 0))
     lux = illuminance(geometry, needs.position, needs.normal, first)

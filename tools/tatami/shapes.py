@@ -131,7 +131,7 @@ def disc(material: str, radius: float, thick: float, segments: int = 72) -> Part
         fan = np.stack([0 * i, i + 1, j + 1], axis=-1)[:, ::sign]
         normals = np.tile([0.0, sign, 0.0], (len(points), 1))
         faces.append(Part(material, points, fan, points[:, [2, 0]] / _tile(material), normals))
-    sides = np.concatenate([ring, ring + [0, thick, 0]])
+    sides = np.concatenate([ring, ring + np.array([0, thick, 0])])
     rim = np.concatenate(
         [np.stack([i, j, j + segments], -1), np.stack([i, j + segments, i + segments], -1)]
     )

@@ -39,7 +39,9 @@ def noise(shape: tuple[int, int], scale_px: tuple[float, float], seed: int) -> F
 def wood(height: int = 512, width: int = 256) -> Float:
     """Straight grain, upright: year rings, fibres and a few darker streaks."""
     u = np.arange(width)[None, :] / width
-    wander = 0.035 * noise((height, width), (120, 40), 1) + 0.004 * noise((height, width), (18, 6), 2)
+    wander = 0.035 * noise((height, width), (120, 40), 1) + 0.004 * noise(
+        (height, width), (18, 6), 2
+    )
     phase = 2 * np.pi * (u + wander)
     rings = 0.5 + 0.5 * np.sin(9 * phase + 1.3 * np.sin(2 * phase) + 0.8 * np.sin(5 * phase))
     fibres = noise((height, width), (22, 0.7), 3)
@@ -87,7 +89,11 @@ def landscape(height: int = 512, width: int = 512) -> Float:
     x = np.arange(width)[None, :] / width
     y = 1 - np.arange(height)[:, None] / height
     ink = np.zeros((height, width))
-    layers = [(0.52, 0.085, 2.1, 0.3, 0.10), (0.42, 0.075, 2.9, 1.9, 0.15), (0.30, 0.055, 4.3, 4.2, 0.22)]
+    layers = [
+        (0.52, 0.085, 2.1, 0.3, 0.10),
+        (0.42, 0.075, 2.9, 1.9, 0.15),
+        (0.30, 0.055, 4.3, 4.2, 0.22),
+    ]
     for base, swing, rate, phase, depth in layers:
         ridge = base + swing * (
             np.sin(rate * 2.2 * x + phase)

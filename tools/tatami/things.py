@@ -31,7 +31,7 @@ def things() -> list[Part]:
 
 
 def _offset(at: tuple[float, float, float], x: float, z: float) -> Float:
-    return np.asarray(at) + [x, 0, z]
+    return np.asarray(at) + np.array([x, 0, z])
 
 
 def _table() -> list[Part]:
@@ -73,7 +73,7 @@ def _cushion(side: float = 0.56, thick: float = 0.10, cells: int = 26) -> Part:
     second = np.where(inward, np.stack([a, d, c], -1), np.stack([b, d, c], -1))
     up = np.concatenate([first.reshape(-1, 3), second.reshape(-1, 3)])
     triangles = np.concatenate([up, up[:, ::-1] + len(grid)]).astype(np.int32)
-    solid = Solid(np.concatenate([grid, below]) + [0, thick / 2 - 0.004, 0], triangles)
+    solid = Solid(np.concatenate([grid, below]) + np.array([0, thick / 2 - 0.004, 0]), triangles)
     return smooth("cloth.indigo", _welded(solid))
 
 
@@ -106,7 +106,10 @@ def _teapot() -> list[Part]:
 
 
 def _tube(
-    path: list[tuple[float, float, float]], radii: list[float], material: str = "raku", sides: int = 14
+    path: list[tuple[float, float, float]],
+    radii: list[float],
+    material: str = "raku",
+    sides: int = 14,
 ) -> Part:
     """A round bar along a polyline, its ends closed in points."""
     points = np.asarray(path, float)
@@ -160,6 +163,13 @@ def _along(path: list[tuple[float, float, float]], steps: int = 7) -> Float:
 
 
 def _jar() -> Part:
-    profile = [(0, 0.0), (0.030, 0.0), (0.034, 0.004), (0.046, 0.035), (0.044, 0.062), (0.030, 0.078)]
+    profile = [
+        (0, 0.0),
+        (0.030, 0.0),
+        (0.034, 0.004),
+        (0.046, 0.035),
+        (0.044, 0.062),
+        (0.030, 0.078),
+    ]
     profile += [(0.031, 0.082), (0.033, 0.088), (0.020, 0.096), (0, 0.099)]
     return smooth("celadon", lathe(*np.array(profile).T, 36))

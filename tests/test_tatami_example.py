@@ -1,0 +1,66 @@
+"""The tatami room in examples/: its files fit together, and its shades are what shells want."""
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import andon
+from andon.files.cameras import read_camera
+from andon.files.meshes import read_mesh
+from andon.files.pictures import read_picture
+
+ROOM = Path(__file__).resolve().parents[1] / "examples" / "tatami"
+
+
+def edges(name):
+    """How often each undirected edge of a sheet is used, and its facing."""
+    geometry = read_mesh(ROOM / name).geometry
+    sides = np.concatenate([geometry.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+    corners = geometry.positions[geometry.triangles]
+    facets = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    away = np.einsum("nj,nj->n", facets, corners.mean(1))
+    return Counter(tuple(sorted(side)) for side in sides.tolist()), away
+
+
+@pytest.mark.parametrize(
+    ("name", "open_edges"),
+    [("andon_shade.obj", 2 * 4 * 6), ("drum_shade.obj", 2 * 48), ("box_lantern.obj", 0)],
+)
+def test_shades_are_single_sheets_that_face_outwards(name, open_edges):
+    uses, away = edges(name)
+    assert set(uses.values()) <= {1, 2}
+    assert sum(count == 1 for count in uses.values()) == open_edges
+    assert (away > 0).all()
+
+
+@pytest.mark.parametrize("name", ["figure3", "figure5", "andon"])
+def test_scenes_load(name):
+    scene = andon.load_scene(ROOM / f"{name}.toml")
+    assert scene.lamp[0].shell is not None
+    assert scene.photometry == "absolute"
+
+
+def test_pictures_have_the_size_of_the_camera():
+    photo, e0 = read_picture(ROOM / "photo.png"), read_picture(ROOM / "e0.exr")
+    assert photo.shape == e0.shape == (720, 1280)
+    assert read_camera(ROOM / "camera.toml", size=(1280, 720)).shape == (720, 1280)
+    assert e0.values.min() > 0
+
+
+def test_photograph_is_exposed():
+    codes = read_picture(ROOM / "photo.png").values
+    middle = np.median(codes)
+    assert 60 < middle < 140
+    # Only the paper of the shoji, in the left third, is at the end of the range.
+    assert (codes[:, 430:].max(axis=-1) == 255).mean() < 1e-3
+
+
+def test_room_is_closed_and_small():
+    geometry = read_mesh(ROOM / "room.glb").geometry
+    assert 10_000 < len(geometry.triangles) <= 30_000
+    low, high = geometry.positions.min(0), geometry.positions.max(0)
+    np.testing.assert_allclose(high - low, [3.7, 2.46, 4.75], atol=0.2)
+    textured = [material for material in geometry.materials if material.texture is not None]
+    assert len(textured) > 10

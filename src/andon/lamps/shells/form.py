@@ -31,9 +31,9 @@ SEAM = 1e-4
 IN_PLANE = 1e-6
 # How often the shell may cover a direction twice before it is no single layer any more.
 MAX_OVERLAP = 0.05
-# The lamp sees edges of the drawn shell under this at most, unless that took too many triangles, and
-# of its facets under the other: on a flat wall luminance falls as cos³ of the angle, so halfway along
-# an edge of δ it differs from the mean of both ends by up to ⅜ δ² (1.5 %).
+# The lamp sees edges of the drawn shell under this at most, unless that took too many triangles,
+# and of its facets under the other. On a flat wall luminance falls as cos³ of the angle: halfway
+# along an edge of δ it differs from the mean of both ends by up to ⅜ δ² (1.5 %).
 DRAWN_RADIANS, MAX_DRAWN = 0.2, 40_000
 FACET_RADIANS = 1.2
 # Of their area, facets that are cut across may lose so much more.

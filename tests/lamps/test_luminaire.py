@@ -76,9 +76,10 @@ def test_a_tilted_luminaire(folder, direction, right):
     st.floats(-400, 400),
 )
 def test_its_frame_is_a_rotation(direction, roll):
-    from andon.lamps.resolve import _right, _unit
+    from andon.lamps.resolve import _right
+    from andon.lamps.tables import unit
 
-    nadir = _unit(direction)
+    nadir = unit(direction)
     distribution = read_photometry_of_a_bulb()
     lamp = GoniometricLamp(
         "l", np.zeros(3), np.ones(3), direction=nadir, right=_right(nadir, np.radians(roll)),

@@ -13,7 +13,7 @@ from andon.lamps.distributions import spot_attenuation
 from andon.lamps.goniometry import candela, maximum_cd
 from andon.lamps.model import GoniometricLamp, PointLamp, SpotLamp
 
-__all__ = ["intensity_cd", "luminaire_from_world"]
+__all__ = ["intensity_cd", "luminaire_axes", "luminaire_from_world"]
 
 Float = NDArray[np.float64]
 
@@ -39,4 +39,9 @@ def intensity_cd(lamp: PointLamp, directions: Float, /) -> Float:
 
 def luminaire_from_world(lamp: GoniometricLamp, /) -> Float:
     """(3, 3) rotation into the luminaire's frame: rows C = 0, C = 90, and up (see goniometry)."""
-    return np.stack([lamp.right, np.cross(lamp.right, lamp.direction), -lamp.direction])
+    return luminaire_axes(lamp.right, lamp.direction)
+
+
+def luminaire_axes(right: Float, direction: Float, /) -> Float:
+    """(3, 3) rotation into the frame of a luminaire whose C = 0 is `right`, nadir `direction`."""
+    return np.stack([right, np.cross(right, direction), -direction])

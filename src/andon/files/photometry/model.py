@@ -31,9 +31,9 @@ class Tilt:
     factors: Float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Distribution:
-    """Candela on a grid of angles, as measured.
+    """Candela on a grid of angles, as measured; one is equal to itself only.
 
     What the angles mean depends on the photometric type; see `andon.lamps.goniometry`. Symmetric
     files are unfolded: nothing is left to mirror. Directions outside the grid are dark.

@@ -7,8 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.files.photometry import Distribution
 from andon.lamps.distributions import POINT_SOLID_ANGLE_SR, spot_attenuation, spot_solid_angle_sr
-from andon.lamps.model import PointLamp, SpotLamp
+from andon.lamps.goniometry import candela, flux_lm, maximum_cd
+from andon.lamps.intensity import luminaire_axes
+from andon.lamps.model import GoniometricLamp, PointLamp, SpotLamp
 from andon.lamps.solids import quarters
 
 __all__ = ["Beam", "beam_flux", "beam_of", "solid_angles"]
@@ -18,6 +21,8 @@ Float = NDArray[np.float64]
 # Pieces of a facet that a cone crosses are cut until they are this share of the cone's angle.
 # The cone's flux is then within 1e-3 of the closed form, which it is scaled to where it can be.
 PIECES_PER_CONE = 24
+# Measured distributions are smooth over this angle, or have steps that no file resolves.
+MEASURED_RADIANS = float(np.radians(2))
 MAX_CUTS, MAX_PIECES = 14, 400_000
 
 
@@ -29,15 +34,20 @@ class Beam:
     ----------
     direction : unit, the axis; None: equal to all sides.
     inner_radians, outer_radians : of a spot.
+    right, distribution : of a luminaire: where C = 0 points, and what was measured.
     """
 
     direction: tuple[float, float, float] | None = None
     inner_radians: float = 0.0
     outer_radians: float = float(np.pi)
+    right: tuple[float, float, float] | None = None
+    distribution: Distribution | None = None
 
     @property
     def flux_lm(self) -> float:
         """Flux of the whole beam at 1 cd."""
+        if self.distribution is not None:
+            return flux_lm(self.distribution) / maximum_cd(self.distribution)
         if self.direction is None:
             return POINT_SOLID_ANGLE_SR
         return spot_solid_angle_sr(self.inner_radians, self.outer_radians)
@@ -45,12 +55,18 @@ class Beam:
     @property
     def feature_radians(self) -> float:
         """Angle within which the intensity changes little."""
+        if self.distribution is not None:
+            return MEASURED_RADIANS
         return np.inf if self.direction is None else self.outer_radians / PIECES_PER_CONE
 
     def towards(self, directions: Float, /) -> Float:
         """Intensity (...) in cd towards unit directions (..., 3)."""
         if self.direction is None:
             return np.ones(directions.shape[:-1])
+        if self.distribution is not None and self.right is not None:
+            axes = luminaire_axes(np.array(self.right), np.array(self.direction))
+            relative = candela(self.distribution, directions @ axes.T)
+            return relative / maximum_cd(self.distribution)
         return spot_attenuation(
             directions @ np.array(self.direction),
             inner_radians=self.inner_radians,
@@ -59,7 +75,7 @@ class Beam:
 
     def touches(self, centre: Float, radius: Float, /) -> NDArray[np.bool_]:
         """Whether caps (n, 3), (n,) on the unit sphere get some of the beam."""
-        if self.direction is None:
+        if self.direction is None or self.distribution is not None:
             return np.ones(len(centre), np.bool_)
         angle = np.arccos(np.clip(centre @ np.array(self.direction), -1, 1))
         return angle < self.outer_radians + radius
@@ -70,6 +86,10 @@ def beam_of(lamp: PointLamp, /) -> Beam:
     if isinstance(lamp, SpotLamp):
         x, y, z = np.asarray(lamp.direction, np.float64).tolist()
         return Beam((x, y, z), lamp.inner_radians, lamp.outer_radians)
+    if isinstance(lamp, GoniometricLamp):
+        x, y, z = np.asarray(lamp.direction, np.float64).tolist()
+        u, v, w = np.asarray(lamp.right, np.float64).tolist()
+        return Beam((x, y, z), right=(u, v, w), distribution=lamp.distribution)
     if type(lamp) is PointLamp:
         return Beam()
     raise TypeError(f"the distribution of a {type(lamp).__name__} is not known to shells")

@@ -1,5 +1,7 @@
 """Projected solid angles by brute force, in ways that share nothing with the closed forms."""
 
+from functools import cache
+
 import numpy as np
 
 from worlds import unit
@@ -7,9 +9,11 @@ from worlds import unit
 __all__ = ["by_area", "by_hull", "by_nusselt", "by_rings"]
 
 
-def gauss(n, low=0.0, high=1.0):
+@cache
+def gauss(n):
+    """Nodes and weights on 0…1."""
     x, w = np.polynomial.legendre.leggauss(n)
-    return low + (x + 1) / 2 * (high - low), w * (high - low) / 2
+    return (x + 1) / 2, w / 2
 
 
 def cut(polygon, normal):
@@ -43,7 +47,7 @@ def by_area(triangles, normal, n=40):
 
 
 def by_rings(reach, normal, radius, n=200):
-    """A sphere as a cone of rings around its axis: the azimuth in closed form, the rest by Gauss."""
+    """A sphere as rings around its axis: the azimuth in closed form, the rest by Gauss."""
     distance = np.linalg.norm(reach)
     c = reach @ normal / distance
     s = np.sqrt(max(1 - c**2, 0))

@@ -98,7 +98,7 @@ def test_polygon_is_its_area(shape, size):
 @pytest.mark.parametrize("size", [1e-4, 0.03, 0.5, 5.0])
 def test_disk_is_a_fine_polygon(size):
     rng = np.random.default_rng(3)
-    shape = circle(2000)
+    shape = circle(600)
     for k in range(10):
         reach = unit(rng.normal(size=3))
         direction = facing(rng, reach)
@@ -110,7 +110,7 @@ def test_disk_is_a_fine_polygon(size):
         assert abs(got - truth) <= 1e-6 * max(truth, least)
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", range(16))
 def test_tube_is_the_hull_of_its_ends(seed):
     """The outline from the convex hull of two circles, in a plane before the eye."""
     rng = np.random.default_rng(seed)
@@ -119,7 +119,7 @@ def test_tube_is_the_hull_of_its_ends(seed):
     middle = ends.mean(axis=0)
     normal = astride(rng, middle, radius) if seed % 3 else unit(rng.normal(size=3))
     truth = by_hull(ends, radius, normal)
-    least = 0.05 * by_hull(ends, radius, unit(middle))
+    least = 0.05 * by_hull(ends, radius, unit(middle), 100)
     assert abs(tube_factor(ORIGIN, normal, ends, radius) - truth) <= 1e-6 * max(truth, least)
 
 
@@ -262,7 +262,7 @@ def test_reciprocity():
 
 
 def test_both_ways_up_make_a_whole():
-    """F(n) − F(−n) = π·n·v, the vector irradiance, linear in n, for lamps astride too."""
+    """F(n) − F(−n) = n·(vector irradiance): linear in n, for lamps astride too."""
     place, _ = receivers(50)
     c, d = np.array([0.2, 0.3, -0.4]), unit(np.array([1.0, 2, 3]))
     ends = np.array([c, c + d])
@@ -346,7 +346,7 @@ def test_contact_is_finite_and_documented():
 
 @pytest.mark.parametrize("normal", [*np.eye(3), *-np.eye(3)])
 def test_special_places_are_never_nan(normal):
-    """On the axis, in the plane, at the centre, the rim, a corner, along an edge, in the horizon."""
+    """On the axis, in the plane, at the centre, the rim, a corner, and in the horizon."""
     line = np.array([-2.0, -1, -0.3, 0, 0.3, 1, 2])
     place = np.stack(np.meshgrid(line, line, line), axis=-1)
     square = flat(SQUARE, ORIGIN, UP)
@@ -375,7 +375,7 @@ def test_nothing_from_behind_and_from_below():
         disk_factor(ORIGIN, -UP, UP, -UP, 5.0),
         polygon_factor(ORIGIN, -UP, square),
         sphere_factor(ORIGIN, -UP, UP, 0.9),
-        tube_factor(ORIGIN, -UP, [UP, UP + [3, 0, 0]], 0.9),
+        tube_factor(ORIGIN, -UP, [UP, np.array([3.0, 0, 1])], 0.9),
     ):
         assert below == pytest.approx(0, abs=1e-15)
 

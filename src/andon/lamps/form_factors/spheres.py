@@ -24,7 +24,7 @@ def sphere_factor(
     share = np.minimum(quotient(radius**2 * np.ones_like(square), square), 1)
     share = np.where(square <= radius**2, 1.0, share)
     whole = np.pi * share * np.maximum(cosine, 0)
-    return np.where(cosine**2 > share, whole, _cut(cosine, share))
+    return np.where(cosine**2 > share, whole, np.clip(_cut(cosine, share), 0, np.pi))
 
 
 def _cut(cosine: Float, share: Float) -> Float:

@@ -245,9 +245,10 @@ LAMPS = [
     ("kind=point,position=0,0,-1", "lamp[0]: intensity_cd or flux_lm is required"),
     ("position=0,0,-1,flux_lm=5", "--lamp: kind is required"),
     ("", "--lamp"),
-    ("kind=sphere,position=0,0,-1,radius_m=0.1,flux_lm=5", "kind 'sphere' is in the schema but"),
+    ("kind=sphere,position=0,0,-1,flux_lm=5", "lamp[0].radius_m: is required"),
     ("kind=ies,position=0,0,-1,file=a.ies,direction=0,-1,0", "a.ies: must exist"),
-    ("kind=point,position=0,0,-1,flux_lm=5,shell.radius_m=0.1", "lamp[0].shell"),
+    ("kind=point,position=0,0,-1,flux_lm=5,shell.radius_m=0", "lamp[0].shell.radius_m"),
+    ("kind=point,position=0,0,-1,flux_lm=5,shell.transmittance=0.5", "radius_m, mesh"),
     ("kind=point,position=0,0,-1,flux_lm=1.7e308,rgb=0,0,1", "too large"),
 ]  # fmt: skip
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import fields, replace
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from andon.engines.prepared import Prepared
 from andon.lamps import Lamp, SpotLamp
+from andon.lamps.sources import BEFORE, NOW
 from andon.pipeline import Frame
 from andon.quantities import Surface
 from andon.rays import RayScene
@@ -34,7 +34,7 @@ def notes_on(frame: Frame, prepared: Prepared, time_seconds: float) -> list[str]
         *model.notes,
         *_on_depth(surface),
         *_on_objects(surface, model),
-        *_on_lamps(surface, prepared, prepared.lamps(time_seconds)),
+        *_on_lamps(surface, prepared, time_seconds),
         *_on_lift(model),
     ]
 
@@ -104,8 +104,10 @@ def _where(points: Any, surface: Surface) -> str:
     return f"it stands {place}, hidden by what is before it, or smaller than a pixel"
 
 
-def _on_lamps(surface: Surface, prepared: Prepared, lamps: Sequence[Lamp]) -> list[str]:
-    """Lamps that add nothing to any pixel."""
+def _on_lamps(surface: Surface, prepared: Prepared, time_seconds: float) -> list[str]:
+    """Lamps that add nothing to any pixel; those of E0 only change what is there."""
+    every, bodies = prepared.lamps(time_seconds), prepared.bodies(time_seconds)
+    lamps = [lamp for lamp in every if not lamp.name.endswith((NOW, BEFORE))]
     if not lamps or not surface.valid.any():
         return []
     from andon.engines.reference import ReferenceEngine
@@ -115,12 +117,16 @@ def _on_lamps(surface: Surface, prepared: Prepared, lamps: Sequence[Lamp]) -> li
     sparse = replace(surface, valid=surface.valid & ((rows + 3 * columns) % SPARSE == 0))
 
     def lights(lamp: Lamp) -> bool:
-        return any(bool((engine.illuminate(s, [lamp]).lux > 0).any()) for s in (sparse, surface))
+        seen = (engine.illuminate(part, [lamp], bodies).lux for part in (sparse, surface))
+        return any(bool((lux > 0).any()) for lux in seen)
 
+    parts: dict[str, list[Lamp]] = {}
+    for lamp in lamps:  # what a shell makes of a lamp is named after it
+        parts.setdefault(lamp.name.split(": ")[0], []).append(lamp)
     return [
-        f"the lamp {lamp.name!r} adds no light: {_why_dark(lamp, lights)}"
-        for lamp in lamps
-        if not lights(lamp)
+        f"the lamp {name!r} adds no light: {_why_dark(lamps[0], lights)}"
+        for name, lamps in parts.items()
+        if not any(lights(lamp) for lamp in lamps)
     ]
 
 

@@ -173,7 +173,7 @@ class GpuEngine:
     def read_bodies(
         self, frame: CameraFrame, seen: GpuSurface, lamps: Sequence[Lamp]
     ) -> tuple[Luminance | None, Luminance | None]:
-        """Luminous bodies alone, and as the glow filters them; drawn for figures, not for frames."""
+        """Luminous bodies alone, and as the glow filters them; for figures, not for frames."""
         view = self._views[frame.view.name]
         if not view.has_lamps:
             return None, None

@@ -39,8 +39,10 @@ __all__ = ["TEXTURE_CELLS", "FacetEdges", "mesh_edges", "polygon_edges", "textur
 
 Float = NDArray[np.float64]
 
-# Cells along each side of a luminous picture.
-TEXTURE_CELLS = 8
+# Cells along each side of a luminous picture: 40 edges, where 8 would be 144. At a distance of the
+# picture's side white noise of 16 × 16 then errs by 0.3 % in the median (0.1 %), at a quarter of it
+# by some per cent.
+TEXTURE_CELLS = 4
 
 # Planes whose unit normals and offsets (in sizes of the lamp) agree to this are one: float32 files.
 SAME_PLANE = 1e-6

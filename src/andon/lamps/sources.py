@@ -26,7 +26,10 @@ from andon.lamps.resolve import resolve_lamps
 if TYPE_CHECKING:
     from andon.scene import Scene
 
-__all__ = ["resolve_sources", "scaled"]
+__all__ = ["BEFORE", "NOW", "resolve_sources", "scaled"]
+
+# Ends of the names of a source's two lamps.
+NOW, BEFORE = ", now", ", before"
 
 Float = NDArray[np.float64]
 
@@ -61,8 +64,8 @@ def resolve_sources(
         if not is_removed:
             if shadow is None or not groups:
                 continue
-            lamps.append(scaled(lamp, dimming, name=f"{lamp.name}, now"))
-        changes: dict[str, Any] = {"name": f"{lamp.name}, before"}
+            lamps.append(scaled(lamp, dimming, name=lamp.name + NOW))
+        changes: dict[str, Any] = {"name": lamp.name + BEFORE}
         if shadow is not None:
             changes["shadow"] = replace(shadow, through=shadow.through | groups)
         lamps.append(scaled(lamp, -dimming, **changes))

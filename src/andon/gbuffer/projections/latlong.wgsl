@@ -1,6 +1,6 @@
 // Camera-frame unit ray through `pixel`: the whole sphere, forward in the middle.
 
-const PI: f32 = 3.14159265358979;
+//!import andon/gpu/pi.wgsl
 
 fn ray_planar(pixel: vec2f) -> vec3f {
   let azimuth = (pixel.x / view.size.x * 2.0 - 1.0) * PI;

@@ -29,12 +29,31 @@ fn tube_illuminance(lamp: i32, position: vec3f, normal: vec3f) -> vec3f {
     * tube_factor(record.position - position, record.right - position, normal, record.radius_m);
 }
 
+// Flat lamps: `count` edges of the outline from `first` on.
+fn outline_factor(lamp: i32, first: i32, count: i32, position: vec3f, normal: vec3f) -> f32 {
+  let record = lamps[lamp];
+  let towards = polygon_towards(record.position - position, record.radius_m, record.axis, normal);
+  var total = 0.0;
+  for (var i = 0; i < count; i++) {
+    total += edge_factor(edges[first + i].start - position, edges[first + i].end - position, normal, towards);
+  }
+  return total;
+}
+
+fn polygon_illuminance(lamp: i32, first: i32, count: i32, position: vec3f, normal: vec3f) -> vec3f {
+  return lamps[lamp].light * max(outline_factor(lamp, first, count, position, normal), 0.0);
+}
+
+fn polygon_both_sides_illuminance(lamp: i32, first: i32, count: i32, position: vec3f, normal: vec3f) -> vec3f {
+  return lamps[lamp].light * abs(outline_factor(lamp, first, count, position, normal));
+}
+
 // The receiver's height above the plane of a facet in w.
 fn seen_from(plane: vec4f, position: vec3f) -> vec4f {
   return vec4f(plane.xyz, dot(plane.xyz, position) + plane.w);
 }
 
-// `count` edges from `first` on: each has the facet on its left and the one on its right.
+// Meshes and luminous pictures: `count` edges from `first` on, each has the facet on its left and the one on its right.
 fn edges_illuminance(lamp: i32, first: i32, count: i32, position: vec3f, normal: vec3f) -> vec3f {
   let towards = mesh_towards(lamps[lamp].position - position, normal);
   var total = vec3f(0.0);

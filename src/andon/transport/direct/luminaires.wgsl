@@ -3,13 +3,13 @@
 // Intensities relative to each lamp's maximum, tables one after the other.
 @group(1) @binding(8) var<storage, read> distributions: array<f32>;
 
-const FULL_CIRCLE: f32 = 6.283185307179586;
+//!import andon/gpu/pi.wgsl
 
 // Bilinear in the angles; the last column is the first again.
 fn relative_intensity(first: i32, rows: i32, columns: i32, local: vec3f) -> f32 {
-  let down = atan2(length(local.xy), local.z) * (2.0 / FULL_CIRCLE) * f32(rows - 1);
+  let down = atan2(length(local.xy), local.z) * (1.0 / PI) * f32(rows - 1);
   // The angle of nothing is undefined: straight down or up, all planes are one.
-  let turn = atan2(local.y, select(local.x, 1e-20, local.x == 0.0)) / FULL_CIRCLE;
+  let turn = atan2(local.y, select(local.x, 1e-20, local.x == 0.0)) / (2.0 * PI);
   let along = (turn - floor(turn)) * f32(columns - 1);
   let row = clamp(i32(down), 0, rows - 2);
   let column = clamp(i32(along), 0, columns - 2);

@@ -22,6 +22,7 @@ from andon.lamps import (
 )
 from andon.lamps.areas import AreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.lamps.distributions import spot_coefficients
+from andon.lamps.edges import polygon_edges
 from andon.lamps.intensity import luminaire_from_world
 
 __all__ = [
@@ -48,11 +49,11 @@ LAMP_RECORD = HostStruct(
     (
         # place in metres; directional: centre of the shadow map; tube: one end
         ("position", "vec3f"),
-        ("radius_m", "f32"),  # of area lamps
+        ("radius_m", "f32"),  # of area lamps; polygon: of a ball that holds it
         # cd, lux of directional and hemisphere (sky) lamps, cd/m² of area lamps
         ("light", "vec3f"),
         ("cone_scale", "f32"),
-        # spot, directional: where the light travels; hemisphere: up; disk: normal
+        # spot, directional: where the light travels; hemisphere: up; disk, polygon: normal
         ("axis", "vec3f"),
         ("cone_offset", "f32"),
         # planar shadow maps: axes of the map; luminaire: C = 0 and C = 90; hemisphere: `right` is
@@ -156,6 +157,8 @@ def form_of(lamp: Lamp, /) -> str:
             return "disk_both_sides" if lamp.two_sided else "disk"
         case TubeLamp():
             return "tube"
+        case PolygonLamp() if lamp.texture is None:
+            return "polygon_both_sides" if lamp.two_sided else "polygon"
         case PolygonLamp() | MeshLamp():
             return "edges"
 
@@ -227,7 +230,10 @@ def _area(lamp: AreaLamp) -> dict[str, Any]:
             start, end = lamp.ends_m
             return light | {"position": start, "right": end, "radius_m": lamp.radius_m}
         case PolygonLamp():
-            return light | {"position": lamp.vertices_m.mean(axis=0)}
+            centre = lamp.vertices_m.mean(axis=0)
+            radius = np.linalg.norm(lamp.vertices_m - centre, axis=1).max()
+            normal = polygon_edges(lamp).left_plane[0, :3]
+            return light | {"position": centre, "radius_m": radius, "axis": normal}
         case MeshLamp():
             return light | {"position": lamp.positions_m.mean(axis=0)}
         case _:

@@ -187,7 +187,8 @@ def _on_a_polygon(lamp: PolygonLamp, count: int) -> Samples:
     up = np.cross(normal, right)
     flat = np.stack([(vertices - vertices[0]) @ right, (vertices - vertices[0]) @ up], axis=1)
     low, high = flat.min(axis=0), flat.max(axis=0)
-    if np.isclose(area, np.prod(high - low)):
+    width, height = (high - low).tolist()
+    if np.isclose(area, width * height):
         inside = low + _lattice(count, 2) * (high - low)
     else:
         inside = _in_a_polygon(flat, area, count)
@@ -201,7 +202,8 @@ def _on_a_polygon(lamp: PolygonLamp, count: int) -> Samples:
 def _in_a_polygon(flat: Float, area: float, count: int) -> Float:
     """(count, 2) in the polygon (k, 2): of a box around it, the points that fall into it."""
     low, high = flat.min(axis=0), flat.max(axis=0)
-    wanted = int(np.ceil(count * np.prod(high - low) / area))
+    width, height = (high - low).tolist()
+    wanted = int(np.ceil(count * width * height / area))
     # A few more than the areas say, since a sequence need not fill the polygon in proportion.
     candidates = low + _sequence(4 * wanted + 64, 2) * (high - low)
     return candidates[_is_inside(candidates, flat)][:count]
@@ -233,7 +235,8 @@ def _on_a_mesh(lamp: MeshLamp, count: int) -> Samples:
     facet = np.searchsorted(bounds, (np.arange(count) + 0.5) / count).clip(max=len(area) - 1)
     u, v = _lattice(count, 2).T
     folded = u + v > 1
-    u, v = np.where(folded, 1 - u, u), np.where(folded, 1 - v, v)
+    u = np.asarray(np.where(folded, 1 - u, u), np.float64)
+    v = np.asarray(np.where(folded, 1 - v, v), np.float64)
     points = a[facet] + u[:, None] * (b - a)[facet] + v[:, None] * (c - a)[facet]
     normals = cross[facet] / (2 * area[facet, None])
     light = np.ones((count, 3))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from andon.lamps import Lamp
-from andon.lamps.areas import AreaLamp
+from andon.lamps import AnyAreaLamp, Lamp
 from andon.transport.direct.records import form_of
 
 __all__ = ["sum_of_lamps"]
@@ -41,7 +40,7 @@ def sum_of_lamps(
         "  var total = vec3f(0.0);",
     ]
     for number, lamp in enumerate(lamps):
-        if isinstance(lamp, AreaLamp):
+        if isinstance(lamp, AnyAreaLamp):
             term = _area_term(number, lamp, bodies, samples, edges)
         else:
             term = _term(number, lamp, layers, tables)
@@ -66,16 +65,16 @@ def _term(
 
 def _area_term(
     number: int,
-    lamp: AreaLamp,
+    lamp: AnyAreaLamp,
     bodies: Sequence[str],
     samples: Mapping[str, int],
     edges: Mapping[str, tuple[int, int]],
 ) -> str:
     form = form_of(lamp)
     term = f"{form}_illuminance({number}, position, normal)"
-    if form == "edges":
+    if lamp.name in edges:
         first, count = edges[lamp.name]
-        term = f"edges_illuminance({number}, {first}, {count}, position, normal)"
+        term = f"{form}_illuminance({number}, {first}, {count}, position, normal)"
     if lamp.shadow is not None:
         first, count = samples[lamp.name], lamp.shadow.samples
         term += f" * soft_share({first}, {count}, {2 * first}, position, normal, bias)"

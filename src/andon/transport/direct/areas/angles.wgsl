@@ -1,7 +1,7 @@
 // Inverse functions, by polynomials that are least in their greatest error (fitted for this file;
 // tests/direct/test_area_parity.py holds them against NumPy).
 
-const PI: f32 = 3.14159265;
+//!import andon/gpu/pi.wgsl
 const TINY: f32 = 1e-30;
 
 // acos(x)/√(1 − x) for 0 ≤ x ≤ 1, relative error 1.5e-8: small angles keep all their digits.

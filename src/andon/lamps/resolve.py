@@ -19,6 +19,7 @@ from andon.lamps.distributions import (
     spot_solid_angle_sr,
 )
 from andon.lamps.goniometry import flux_lm, maximum_cd, tilt_factor
+from andon.lamps.imported import imported_lamps
 from andon.lamps.model import (
     DirectionalLamp,
     GoniometricLamp,
@@ -49,7 +50,7 @@ Float = NDArray[np.float64]
 
 
 def resolve_lamps(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
-    """The lamps of a scene at one moment, in the order of the file.
+    """The lamps of a scene at one moment, in the order of the file; then those of glTF files.
 
     Raises `InputError` for what the schema has and this version does not render: an area lamp is
     never silently replaced by a point.
@@ -68,7 +69,7 @@ def resolve_lamps(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
         if not all(np.isfinite(values).all() for values in light):
             raise InputError("is too large to compute with", file=scene.file, field=place)
         resolved.append(lamp)
-    return tuple(resolved)
+    return (*resolved, *imported_lamps(scene, [lamp.name for lamp in resolved]))
 
 
 def _refuse_later(scene: Scene, place: str, table: AnyLamp) -> None:

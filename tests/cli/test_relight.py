@@ -176,8 +176,9 @@ def test_a_luminaire_of_the_users_own_file(capfd, folder):
     inner = folder / "inner"
     inner.mkdir()
     (inner / "lamp.ies").write_text(ies(candela=400))
+    lamp = "kind=ies,position=0,0,0,direction=0,0,-1,shadow=false"
     outcome = relight(
-        capfd, "--lamp", f"kind=ies,position=0,0,0,direction=0,0,-1,shadow=false,file={inner / 'lamp.ies'}",
+        capfd, "--lamp", f"{lamp},file={inner / 'lamp.ies'}",
         "--engine", "reference", "--ambient-lux", 200, "--illuminance-map", "lux.exr",
     )  # fmt: skip
     assert outcome.code == 0, outcome.err

@@ -167,3 +167,21 @@ def test_help_imports_nothing_heavy():
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stderr.splitlines()[-1]) == []
     assert "relight" in done.stdout
+
+
+def test_a_luminaire_of_the_users_own_file(capfd, folder):
+    """A file named in --lamp may lie anywhere; its light is the file's."""
+    from photometry_files import ies
+
+    inner = folder / "inner"
+    inner.mkdir()
+    (inner / "lamp.ies").write_text(ies(candela=400))
+    lamp = "kind=ies,position=0,0,0,direction=0,0,-1,shadow=false"
+    outcome = relight(
+        capfd, "--lamp", f"{lamp},file={inner / 'lamp.ies'}",
+        "--engine", "reference", "--ambient-lux", 200, "--illuminance-map", "lux.exr",
+    )  # fmt: skip
+    assert outcome.code == 0, outcome.err
+    lux = read_picture(folder / "lux.exr").values
+    away = 2.5 * np.sqrt(1 + ((10 - 31.5) / 57.6) ** 2 + ((20 - 23.5) / 57.6) ** 2)
+    assert lux[20, 10] == pytest.approx([400 * 2.5 / away**3] * 3, rel=1e-5)

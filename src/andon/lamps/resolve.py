@@ -22,6 +22,7 @@ from andon.lamps.distributions import (
     spot_solid_angle_sr,
 )
 from andon.lamps.goniometry import flux_lm, maximum_cd, tilt_factor
+from andon.lamps.imported import imported_lamps
 from andon.lamps.kinds import Lamp
 from andon.lamps.model import (
     DirectionalLamp,
@@ -48,17 +49,23 @@ if TYPE_CHECKING:  # scene imports pydantic; lamps built in Python do not need i
     )
     from andon.scene.lamp_base import Shadowing
 
-__all__ = ["resolve_bodies", "resolve_lamps"]
+__all__ = ["resolve_bodies", "resolve_lamps", "resolve_tables"]
 
 Float = NDArray[np.float64]
 
 
 def resolve_lamps(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
-    """The lamps of a scene at one moment, in the order of the file.
+    """The lamps of a scene at one moment, in the order of the file; then those of glTF files.
 
     A lamp in a shell is several: see `andon.lamps.shells`. Raises `InputError` for what the
     schema has and this version does not render.
     """
+    lamps = resolve_tables(scene, time_seconds)
+    return (*lamps, *imported_lamps(scene, [lamp.name for lamp in lamps]))
+
+
+def resolve_tables(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
+    """The lamps of the scene's own tables."""
     resolved: list[Lamp] = []
     for place, table, groups in _tables(scene, time_seconds):
         with np.errstate(over="ignore"):  # what overflows is refused below

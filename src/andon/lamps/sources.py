@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps.kinds import Lamp
-from andon.lamps.resolve import resolve_lamps
+from andon.lamps.resolve import resolve_tables
 
 if TYPE_CHECKING:
     from andon.scene import Scene
@@ -57,7 +57,7 @@ def resolve_sources(
     dimming = np.broadcast_to(np.asarray(ambient.dimming, float), 3)
     known = scene.model_copy(update={"lamp": ambient.source})
     lamps: list[Lamp] = []
-    for lamp in resolve_lamps(known, time_seconds):
+    for lamp in resolve_tables(known, time_seconds):
         # Parts of a source in a shell are named after it.
         is_removed = any(lamp.name.split(": ")[0] == name for name in ambient.removed)
         shadow = getattr(lamp, "shadow", None)

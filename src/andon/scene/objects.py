@@ -109,6 +109,11 @@ class SceneObject(Placed):
         default=True,
         description="The animation begins again at its end.",
     )
+    lamps: bool = Field(
+        default=False,
+        description="The lights of the glTF file (KHR_lights_punctual) are lamps of the scene, "
+        "named by their nodes; their `range` is not used.",
+    )
     casts_shadow: bool = Field(
         default=True,
         description="Darkens the real surface.",

@@ -147,6 +147,11 @@ class Surface(Table):
         description="Axes of `normals`: camera with y down, z forward (opencv); y up, z backward "
         "(opengl); world.",
     )
+    lamps: bool = Field(
+        default=False,
+        description="The lights of the glTF file (KHR_lights_punctual) are lamps of the scene, "
+        "named by their nodes; their `range` is not used.",
+    )
     world_from_mesh: Transform | None = Field(
         default=None,
         description="4×4 affine placement of the mesh, row by row.",
@@ -172,6 +177,8 @@ class Surface(Table):
     def _check_geometry(self) -> Surface:
         if self.normals is None or self.mesh is not None:  # normals may go with depth, or alone
             exactly_one(self, "mesh", "depth", "normals")
+        if self.lamps and self.mesh is None:
+            raise refusal("needs a mesh, whose lights they are", key="lamps")
         if self.reflectance is not None and self.reflectance_map is not None:
             raise refusal(
                 "reflectance and reflectance_map exclude each other", key="reflectance_map"

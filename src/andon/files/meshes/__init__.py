@@ -17,14 +17,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from andon.errors import InputError
 from andon.files.limits import DEFAULT_LIMITS, Limits
-from andon.files.meshes.gltf import read_gltf
+from andon.files.meshes.gltf import read_gltf, read_gltf_lights
 from andon.files.meshes.model import MeshFile, MeshLight
 from andon.files.meshes.obj import read_obj
 from andon.files.meshes.ply import read_ply
 from andon.files.reader import Reader, choose_reader
 
-__all__ = ["MESH_READERS", "MeshFile", "MeshLight", "read_mesh"]
+__all__ = ["MESH_READERS", "MeshFile", "MeshLight", "read_lights", "read_mesh"]
 
 MESH_READERS = (
     Reader("mesh.obj", (".obj",), read_obj),
@@ -32,6 +33,15 @@ MESH_READERS = (
     Reader("mesh.gltf", (".gltf",), read_gltf),
     Reader("mesh.glb", (".glb",), read_gltf),
 )
+
+
+def read_lights(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> tuple[MeshLight, ...]:
+    """The lights of a glTF file, in metres with +Y up; other formats have none and are refused."""
+    if Path(path).suffix.lower() not in (".gltf", ".glb"):
+        raise InputError(
+            "only glTF files have lights", file=path, remedy="use a .gltf or .glb file"
+        )
+    return read_gltf_lights(path, limits=limits)
 
 
 def read_mesh(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> MeshFile:

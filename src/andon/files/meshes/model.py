@@ -20,6 +20,8 @@ class MeshLight:
     Attributes
     ----------
     name : the light's, else its node's.
+    node : the name of its node, else of the light, else the node's place in the file; two nodes
+        may share one light.
     kind : ``point``, ``spot`` or ``directional``.
     colour : (3,) linear Rec.709 factors ≥ 0, multiply `intensity`.
     intensity : cd for point and spot, lx for directional, ≥ 0.
@@ -36,6 +38,7 @@ class MeshLight:
     inner_radians: float
     outer_radians: float
     world_from_light: NDArray[np.float64]
+    node: str
 
 
 @dataclass(frozen=True)

@@ -37,11 +37,11 @@ from andon.files.meshes.gltf.primitives import (
     skin_matrices,
     with_facet_normals,
 )
-from andon.files.meshes.model import MeshFile
+from andon.files.meshes.model import MeshFile, MeshLight
 from andon.files.tree import Tree
 from andon.quantities import Geometry, Material
 
-__all__ = ["read_gltf"]
+__all__ = ["read_gltf", "read_gltf_lights"]
 
 # glTF 2.0, 3.7.2.1: a primitive without material has the values of an empty one.
 DEFAULT_MATERIAL = Material("default", (1.0, 1.0, 1.0), metallic=1.0, two_sided=False)
@@ -55,13 +55,13 @@ def read_gltf(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> MeshFile:
     """
     document = open_document(path, limits)
     nodes = place_nodes(document)
-    lights = [read_light(document, node) for node in nodes]
+    lights = _lights(document, nodes)
     parts, materials = _Collector(document).collect(nodes)
     if not parts:
         raise InputError("a mesh must have faces, this scene has none", file=path)
     return MeshFile(
         _merge(parts, materials, str(path), limits.max_vertices),
-        tuple(light for light in lights if light is not None),
+        lights,
         tuple(node.name for node in nodes),
         _at_rest(document, nodes),
     )
@@ -78,6 +78,17 @@ def _at_rest(document: Document, nodes: list[PlacedNode]) -> tuple[str, ...]:
         "morph targets": any(part.get("targets") is not None for part in primitives),
     }
     return tuple(name for name, is_there in found.items() if is_there)
+
+
+def read_gltf_lights(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> tuple[MeshLight, ...]:
+    """The lights of a .gltf or .glb file, in the order of their nodes; its meshes are not read."""
+    document = open_document(path, limits)
+    return _lights(document, place_nodes(document))
+
+
+def _lights(document: Document, nodes: list[PlacedNode]) -> tuple[MeshLight, ...]:
+    found = (read_light(document, node) for node in nodes)
+    return tuple(light for light in found if light is not None)
 
 
 class _Collector:

@@ -130,6 +130,7 @@ def read_light(document: Document, node: PlacedNode) -> MeshLight | None:
         inner,
         outer,
         node.world_from_node,
+        node.name if "name" in node.entry or name is None else name.text(),
     )
 
 

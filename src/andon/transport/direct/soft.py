@@ -62,8 +62,9 @@ def sample_points(lamp: AreaLamp, count: int, /) -> Samples:
     """`count` ≥ 1 points, evenly spread; the same for every frame, so that nothing flickers."""
     match lamp:
         case SphereLamp():
-            inside = _centred(_in_a_ball(count)) * lamp.radius_m
-            return _faceless(lamp.position_m + inside)
+            inside = _centred(_in_a_ball(count))
+            inside /= np.maximum(np.linalg.norm(inside, axis=1, keepdims=True), 1)
+            return _faceless(lamp.position_m + inside * lamp.radius_m)
         case TubeLamp():
             return _faceless(lamp.ends_m.mean(axis=0) + _centred(_in_a_tube(lamp, count)))
         case DiskLamp():

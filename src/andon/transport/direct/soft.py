@@ -30,7 +30,15 @@ from numpy.typing import NDArray
 from andon.lamps.areas import AreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.spaces import perpendicular
 
-__all__ = ["NO_FACE", "ONE_SIDE", "TWO_SIDES", "Samples", "sample_points", "sample_weights"]
+__all__ = [
+    "NO_FACE",
+    "ONE_SIDE",
+    "TWO_SIDES",
+    "Samples",
+    "probes",
+    "sample_points",
+    "sample_weights",
+]
 
 Float = NDArray[np.float64]
 
@@ -59,7 +67,34 @@ class Samples:
 
 
 def sample_points(lamp: AreaLamp, count: int, /) -> Samples:
-    """`count` ≥ 1 points, evenly spread; the same for every frame, so that nothing flickers."""
+    """`count` ≥ 1 points, evenly spread; the same for every frame, so that nothing flickers.
+
+    The first of them are the farthest apart: where these agree, so do all (`probes`).
+    """
+    samples = _samples(lamp, count)
+    order = _farthest_first(samples.points)
+    return Samples(
+        samples.points[order], samples.normals[order], samples.light[order], samples.sides
+    )
+
+
+def probes(count: int, /) -> int:
+    """How many of `count` samples are asked before the rest is believed to agree with them."""
+    return count if count <= 8 else 6 if count <= 16 else 8
+
+
+def _farthest_first(points: Float) -> NDArray[np.intp]:
+    """(n,) an order in which each point is the farthest from those before it."""
+    order = [int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))]
+    distance = np.linalg.norm(points - points[order[0]], axis=1)
+    while len(order) < len(points):
+        distance[order] = -1
+        order.append(int(np.argmax(distance)))
+        distance = np.minimum(distance, np.linalg.norm(points - points[order[-1]], axis=1))
+    return np.array(order)
+
+
+def _samples(lamp: AreaLamp, count: int) -> Samples:
     match lamp:
         case SphereLamp():
             inside = _centred(_in_a_ball(count))

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from andon.lamps import AnyAreaLamp, Lamp
 from andon.transport.direct.records import form_of
+from andon.transport.direct.soft import probes
 
 __all__ = ["sum_of_lamps"]
 
@@ -71,13 +72,14 @@ def _area_term(
     edges: Mapping[str, tuple[int, int]],
 ) -> str:
     form = form_of(lamp)
+    place = "position, normal, bias"
     term = f"{form}_illuminance({number}, position, normal)"
     if lamp.name in edges:
         first, count = edges[lamp.name]
         term = f"{form}_illuminance({number}, {first}, {count}, position, normal)"
     if lamp.shadow is not None:
         first, count = samples[lamp.name], lamp.shadow.samples
-        term += f" * soft_share({first}, {count}, {2 * first}, position, normal, bias)"
+        term += f" * soft_share({first}, {count}, {probes(count)}, {2 * first}, {place})"
     if lamp.body in bodies:
         term += f" * select(1.0, 0.0, body == {list(bodies).index(lamp.body) + 1}u)"
     return term

@@ -22,6 +22,7 @@ _ENTRIES: dict[str, dict[str, Any]] = {
     "float array": {"texture": {**_UNFILTERABLE, "view_dimension": "2d-array"}},
     "uint": {"texture": {"sample_type": "uint", "view_dimension": "2d"}},
     "depth": {"texture": {"sample_type": "depth", "view_dimension": "2d"}},
+    "sampler": {"sampler": {"type": "non-filtering"}},
     "depth array": {"texture": {"sample_type": "depth", "view_dimension": "2d-array"}},
 }
 

@@ -86,6 +86,7 @@ class DirectStage:
                 6: ("storage", self.areas.samples_buffer),
                 7: ("storage", self.areas.edges_buffer),
                 8: ("storage", luminaires.buffer),
+                9: ("sampler", gpu.device.create_sampler()),
             },
             "direct",
         )

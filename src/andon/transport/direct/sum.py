@@ -79,7 +79,7 @@ def _area_term(
         term = f"{form}_illuminance({number}, {first}, {count}, position, normal)"
     if lamp.shadow is not None:
         first, count = samples[lamp.name], lamp.shadow.samples
-        term += f" * soft_share({first}, {count}, {probes(count)}, {2 * first}, {place})"
+        term = f"softened({term}, {first}, {count}, {probes(count)}, {2 * first}, {place})"
     if lamp.body in bodies:
         term += f" * select(1.0, 0.0, body == {list(bodies).index(lamp.body) + 1}u)"
     return term

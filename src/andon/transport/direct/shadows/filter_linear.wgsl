@@ -1,13 +1,8 @@
 // Shadows blended over one texel.
 
 //!import andon/transport/direct/shadows/blend.wgsl
+//!import andon/transport/direct/shadows/gather.wgsl
 
 fn paraboloid_share(point: Receiver, place: vec2f) -> f32 {
-  let corner = texel_corner(place);
-  return bilinear(vec4<bool>(
-    paraboloid_texel_lit(point, corner),
-    paraboloid_texel_lit(point, corner + vec2i(1, 0)),
-    paraboloid_texel_lit(point, corner + vec2i(0, 1)),
-    paraboloid_texel_lit(point, corner + vec2i(1, 1)),
-  ), place, corner);
+  return gathered_share(paraboloids, MAP_SIZE, point, place);
 }

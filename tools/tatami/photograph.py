@@ -27,7 +27,7 @@ Float = NDArray[np.float64]
 # Every so many pixels, first: see daylight.illuminance.
 OVERTURE_PX = 6
 # The exposure: cd/m² of linear value 1.
-LUMINANCE_PER_UNIT = 200.0
+LUMINANCE_PER_UNIT = 160.0
 
 
 @dataclass(frozen=True)
@@ -120,5 +120,5 @@ def _glow(position: Float) -> Float:
     clouds = 0.5 * noise((side, side), (16, 11), 40) + 0.3 * noise((side, side), (6, 5), 41)
     row = (position[:, 1] / 2.0 * side).astype(np.int64) % side
     column = ((position[:, 2] + 1.5) / 3.0 * side).astype(np.int64) % side
-    shade = 1 + 0.035 * clouds[row, column] + 0.10 * (position[:, 1] - 1.0)
+    shade = 1 + 0.035 * clouds[row, column] + 0.06 * (position[:, 1] - 1.0)
     return SHOJI_CD_M2 * SHOJI_RGB * shade[:, None]

@@ -37,15 +37,18 @@ Float = NDArray[np.float64]
 
 LUMENS_PER_WATT = 179.0  # Radiance's own
 SHOJI_CD_M2, LAMP_CD_M2 = 112.0, 3400.0
-SHOJI_RGB = factors_from_temperature(6500.0, daylight=True)
-LAMP_RGB = factors_from_temperature(5200.0)
+# The camera's white balance: light of its temperature has equal channels, in the photograph and in
+# E0 alike.
+WHITE = factors_from_temperature(5600.0)
+SHOJI_RGB = factors_from_temperature(6500.0, daylight=True) / WHITE
+LAMP_RGB = factors_from_temperature(5200.0) / WHITE
 # The lattice covers this share of the paper.
 LATTICE_SHARE = 0.09
 # The bounced run's lamp shines down only: of its sides' light this share is counted.
 SIDES_COUNT = 0.5
 LAMP_HALF, LAMP_LOW, LAMP_HIGH = 0.238, 2.125, 2.265
-DIRECT = "-ab 0 -ds 0.25 -dj 0 -dt 0 -dc 1 -dr 0"
-BOUNCE = "-ab {} -ds 0 -dj 0 -dt 0 -dc 1 -dr 0 -ad 900 -as 250 -aa 0.16 -ar 32 -lw 2e-3 -lr 6"
+DIRECT = "-ab 0 -ds 0.25 -dj 0.5 -dt 0 -dc 1 -dr 0"
+BOUNCE = "-ab {} -ds 0 -dj 0 -dt 0 -dc 1 -dr 0 -ad 800 -as 200 -aa 0.16 -ar 80 -lw 2e-3 -lr 6"
 BOUNCES = 3
 
 
@@ -71,7 +74,7 @@ def illuminance(
     rays = np.concatenate([points, normals], axis=1)
     sheets = _run(geometry, outer, shoji_patches(6, 5), DIRECT, rays)
     sheets = np.where(_beside_paper(points, normals)[:, None], _BESIDE_LUX, sheets)
-    lamp = _run(geometry, (), lamp_patches(5, 2), DIRECT, rays)
+    lamp = _run(geometry, (), lamp_patches(5, 4), DIRECT, rays)
     few = [_shrunk(patch) for patch in _few()]
     asked = np.concatenate([rays[order], rays])
     total = _run(geometry, ("lattice",), few, BOUNCE.format(BOUNCES), asked)[len(order) :]
@@ -137,7 +140,7 @@ def lamp_patches(below: int, sides: int) -> list[Patch]:
     ring = np.array([(-h, LAMP_LOW, h), (h, LAMP_LOW, h), (h, LAMP_LOW, -h), (-h, LAMP_LOW, -h)])
     patches: list[Patch] = []
     for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-        patches += _cut(Patch(a, b - a, np.array([0, high, 0]), luminance), 1, sides)
+        patches += _cut(Patch(a, b - a, np.array([0, high, 0]), luminance), sides, sides)
     half, deep = np.array([h, 0, 0]), np.array([0, 0, 2 * h])
     patches += _cut(Patch(ring[3], half, deep, luminance), below, below)
     patches += _cut(_turned(Patch(ring[3] + half, half, deep, luminance)), below, below)

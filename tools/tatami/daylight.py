@@ -10,7 +10,8 @@ lamp         all                            its faces, cut into many rectangles 
 bounce       all but the lattice            few small ones of the same flux       with − none
 ============ ============================== ===================================== ============
 
-Rectangles are cut unevenly, so that the steps of their shadows melt into each other. The lattice
+Each row of rectangles is shifted against the one before, so that the steps of their shadows melt
+into each other. The lattice
 is too fine to matter for the room, but would throw the pattern of the cuts onto everything.
 """
 
@@ -19,8 +20,9 @@ from __future__ import annotations
 import os
 import subprocess
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -34,14 +36,19 @@ from tatami.building import SHOJI_HIGH, SHOJI_LOW, shoji_sheets
 Float = NDArray[np.float64]
 
 LUMENS_PER_WATT = 179.0  # Radiance's own
-SHOJI_CD_M2, LAMP_CD_M2 = 180.0, 3400.0
-SHOJI_RGB = factors_from_temperature(6300.0, daylight=True)
-LAMP_RGB = factors_from_temperature(4300.0)
+SHOJI_CD_M2, LAMP_CD_M2 = 112.0, 3400.0
+# The camera's white balance: light of its temperature has equal channels, in the photograph and in
+# E0 alike.
+WHITE = factors_from_temperature(5600.0)
+SHOJI_RGB = factors_from_temperature(6500.0, daylight=True) / WHITE
+LAMP_RGB = factors_from_temperature(5200.0) / WHITE
 # The lattice covers this share of the paper.
 LATTICE_SHARE = 0.09
+# The bounced run's lamp shines down only: of its sides' light this share is counted.
+SIDES_COUNT = 0.5
 LAMP_HALF, LAMP_LOW, LAMP_HIGH = 0.238, 2.125, 2.265
-DIRECT = "-ab 0 -ds 0.25 -dj 0 -dt 0 -dc 1 -dr 0"
-BOUNCE = "-ab {} -ds 0 -dj 0 -dt 0 -dc 1 -dr 0 -ad 700 -as 200 -aa 0.18 -ar 32 -lw 2e-3 -lr 6"
+DIRECT = "-ab 0 -ds 0.25 -dj 0.5 -dt 0 -dc 1 -dr 0"
+BOUNCE = "-ab {} -ds 0 -dj 0 -dt 0 -dc 1 -dr 0 -ad 800 -as 200 -aa 0.16 -ar 80 -lw 2e-3 -lr 6"
 BOUNCES = 3
 
 
@@ -65,67 +72,100 @@ def illuminance(
     """
     outer = ("paper.shoji", "lattice")
     rays = np.concatenate([points, normals], axis=1)
-    sheets = _run(geometry, outer, shoji_patches(36), DIRECT, rays)
-    lamp = _run(geometry, (), lamp_patches(48, 3), DIRECT, rays)
-    few = [_shrunk(patch) for patch in shoji_patches(2) + lamp_patches(1, 1)[:1]]
+    sheets = _run(geometry, outer, shoji_patches(6, 5), DIRECT, rays)
+    sheets = np.where(_beside_paper(points, normals)[:, None], _BESIDE_LUX, sheets)
+    lamp = _run(geometry, (), lamp_patches(5, 4), DIRECT, rays)
+    few = [_shrunk(patch) for patch in _few()]
     asked = np.concatenate([rays[order], rays])
     total = _run(geometry, ("lattice",), few, BOUNCE.format(BOUNCES), asked)[len(order) :]
     direct = _run(geometry, ("lattice",), few, BOUNCE.format(0), rays)
     return sheets + lamp + np.maximum(total - direct, 0)
 
 
-def shoji_patches(count: int) -> list[Patch]:
-    """Each sheet of paper as `count` rectangles, a little behind the paper's place."""
+# On a bar that stands on the paper: half of what it sees is paper, less the next bars' share.
+_BESIDE_LUX = 0.85 / 2 * np.pi * SHOJI_CD_M2 * SHOJI_RGB
+
+
+def _beside_paper(points: Float, normals: Float) -> NDArray[np.bool_]:
+    """(n,) the sides of lattice and stiles, which are too near the paper to be sampled."""
+    inside = (points[:, 1] > SHOJI_LOW - 1e-4) & (points[:, 1] < SHOJI_HIGH + 1e-4)
+    inside &= np.abs(normals[:, 0]) < 0.1
+    near = np.zeros(len(points), bool)
+    for sheet in shoji_sheets():
+        along = (points[:, 2] > sheet.north - 1e-4) & (points[:, 2] < sheet.south + 1e-4)
+        depth = points[:, 0] - sheet.x
+        near |= along & (depth > -1e-4) & (depth < 0.02)
+    return inside & near
+
+
+def _few() -> list[Patch]:
+    """The lamps of the run for bounced light."""
+    luminance = SHOJI_CD_M2 * SHOJI_RGB * (1 - LATTICE_SHARE)
+    patches: list[Patch] = []
+    for sheet in shoji_sheets():
+        half = np.array([0, (SHOJI_HIGH - SHOJI_LOW) / 2, 0])
+        along = np.array([0, 0, sheet.north - sheet.south])
+        corner = np.array([sheet.x, SHOJI_LOW, sheet.south])
+        patches += [Patch(corner + k * half, along, half, luminance) for k in (0, 1)]
+    h = LAMP_HALF
+    below = Patch(
+        np.array([-h, LAMP_LOW, -h]),
+        np.array([2 * h, 0, 0]),
+        np.array([0, 0, 2 * h]),
+        LAMP_CD_M2 * LAMP_RGB,
+    )
+    # Its sides have this share of its lower face.
+    sides = 4 * (LAMP_HIGH - LAMP_LOW) / (2 * h)
+    dim = below.luminance * sides * SIDES_COUNT
+    return [*patches, replace(below, luminance=below.luminance + dim)]
+
+
+def shoji_patches(rows: int, columns: int) -> list[Patch]:
+    """Each sheet of paper as rectangles, a little behind the paper's place."""
     luminance = SHOJI_CD_M2 * SHOJI_RGB * (1 - LATTICE_SHARE)
     patches: list[Patch] = []
     for number, sheet in enumerate(shoji_sheets()):
         corner = np.array([sheet.x + 0.0005, SHOJI_LOW, sheet.south])
-        along, up = (
-            np.array([0, 0, sheet.north - sheet.south]),
-            np.array([0, SHOJI_HIGH - SHOJI_LOW, 0]),
-        )
-        whole = Patch(corner, along, up, luminance)
-        patches += _cut(whole, count, np.random.default_rng(number))
+        along = np.array([0, 0, sheet.north - sheet.south])
+        whole = Patch(corner, along, np.array([0, SHOJI_HIGH - SHOJI_LOW, 0]), luminance)
+        turned = number % 2
+        patches += _cut(_turned(whole), columns, rows) if turned else _cut(whole, rows, columns)
     return patches
 
 
 def lamp_patches(below: int, sides: int) -> list[Patch]:
-    """The lamp's paper: its lower face as `below` rectangles, each side as `sides`."""
+    """The lamp's paper: two halves of its lower face, each `below` × `below`, and its sides."""
     h, high = LAMP_HALF, LAMP_HIGH - LAMP_LOW
     luminance = LAMP_CD_M2 * LAMP_RGB
-    up = np.array([0, high, 0])
-    corners = [
-        np.array(p, float)
-        for p in ((-h, LAMP_LOW, h), (h, LAMP_LOW, h), (h, LAMP_LOW, -h), (-h, LAMP_LOW, -h))
-    ]
-    around = [
-        Patch(a, b - a, up, luminance)
-        for a, b in zip(corners, corners[1:] + corners[:1], strict=True)
-    ]
-    floor = Patch(corners[3], np.array([2 * h, 0, 0]), np.array([0, 0, 2 * h]), luminance)
-    generator = np.random.default_rng(9)
-    patches = _cut(floor, below, generator)
-    for side in around:
-        patches += _cut(side, sides, generator)
+    ring = np.array([(-h, LAMP_LOW, h), (h, LAMP_LOW, h), (h, LAMP_LOW, -h), (-h, LAMP_LOW, -h)])
+    patches: list[Patch] = []
+    for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True):
+        patches += _cut(Patch(a, b - a, np.array([0, high, 0]), luminance), sides, sides)
+    half, deep = np.array([h, 0, 0]), np.array([0, 0, 2 * h])
+    patches += _cut(Patch(ring[3], half, deep, luminance), below, below)
+    patches += _cut(_turned(Patch(ring[3] + half, half, deep, luminance)), below, below)
     return patches
 
 
-def _cut(patch: Patch, count: int, generator: np.random.Generator) -> list[Patch]:
-    """Cut into `count` rectangles of nearly one size, never quite in the middle."""
-    if count == 1:
-        return [patch]
-    share = count // 2 / count * generator.uniform(0.88, 1.12)
-    a, b = patch.along, patch.up
-    if np.linalg.norm(a) > np.linalg.norm(b):
-        parts = (Patch(patch.corner, a * share, b, patch.luminance),)
-        parts += (Patch(patch.corner + a * share, a * (1 - share), b, patch.luminance),)
-    else:
-        parts = (Patch(patch.corner, a, b * share, patch.luminance),)
-        parts += (Patch(patch.corner + b * share, a, b * (1 - share), patch.luminance),)
-    counts = (count // 2, count - count // 2)
-    return [
-        piece for part, n in zip(parts, counts, strict=True) for piece in _cut(part, n, generator)
-    ]
+def _cut(patch: Patch, rows: int, columns: int) -> list[Patch]:
+    """Cut into rows along `along`, each into columns that are shifted against the row before."""
+    golden = (np.sqrt(5) - 1) / 2
+    pieces: list[Patch] = []
+    for row in range(rows):
+        inner = (np.arange(columns) + np.mod((row + 0.5) * golden, 1)) / columns
+        edges = np.concatenate([[0.0], inner, [1.0]])
+        corner = patch.corner + patch.up * row / rows
+        for left, right in pairwise(edges):
+            along = patch.along * (right - left)
+            pieces.append(
+                Patch(corner + patch.along * left, along, patch.up / rows, patch.luminance)
+            )
+    return pieces
+
+
+def _turned(patch: Patch) -> Patch:
+    """The same with its sides exchanged, so that it is cut the other way."""
+    return Patch(patch.corner + patch.along, patch.up, -patch.along, patch.luminance)
 
 
 def _shrunk(patch: Patch, side: float = 0.012) -> Patch:

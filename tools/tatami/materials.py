@@ -25,7 +25,7 @@ LOOKS: dict[str, Look] = {
     "wood.cypress": Look((0.86, 0.66, 0.44), "wood"),
     "wood.cedar": Look((0.50, 0.33, 0.20), "wood"),
     "wood.smoked": Look((0.17, 0.105, 0.068), "wood"),
-    "wood.zelkova": Look((0.62, 0.34, 0.17), "wood"),
+    "wood.zelkova": Look((0.56, 0.325, 0.18), "wood"),
     "wood.floor": Look((0.48, 0.30, 0.17), "wood"),
     "plaster.sand": Look((0.86, 0.76, 0.57), "plaster"),
     "plaster.moss": Look((0.62, 0.64, 0.47), "plaster"),

@@ -26,8 +26,10 @@ from tatami.tracing import GRID, Samples, Tracer
 Float = NDArray[np.float64]
 # Every so many pixels, first: see daylight.illuminance.
 OVERTURE_PX = 6
+# Curved surfaces are facets that shade themselves: their points are lifted.
+CURVED_LIFT_M = 1e-3
 # The exposure: cd/m² of linear value 1.
-LUMINANCE_PER_UNIT = 200.0
+LUMINANCE_PER_UNIT = 150.0
 
 
 @dataclass(frozen=True)
@@ -101,9 +103,10 @@ def _needs(samples: Samples, paper: int) -> _Needs:
     found, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     glow = np.where((samples.material == paper)[:, None], _glow(samples.position), 0.0)
     groups = inverse.reshape(-1)
+    lift = np.where(samples.group < 0, CURVED_LIFT_M, 0.0)
     return _Needs(
         found[:, 0],
-        samples.position[first],
+        samples.position[first] + lift[first, None] * samples.normal[first],
         samples.normal[first],
         _summed(groups, samples.reflectance, len(found)),
         _summed(groups, glow, len(found)),
@@ -120,5 +123,5 @@ def _glow(position: Float) -> Float:
     clouds = 0.5 * noise((side, side), (16, 11), 40) + 0.3 * noise((side, side), (6, 5), 41)
     row = (position[:, 1] / 2.0 * side).astype(np.int64) % side
     column = ((position[:, 2] + 1.5) / 3.0 * side).astype(np.int64) % side
-    shade = 1 + 0.035 * clouds[row, column] + 0.10 * (position[:, 1] - 1.0)
+    shade = 1 + 0.035 * clouds[row, column] + 0.06 * (position[:, 1] - 1.0)
     return SHOJI_CD_M2 * SHOJI_RGB * shade[:, None]

@@ -52,7 +52,7 @@ class Report:
     hole_pixels, clipped_pixels : without geometry (unchanged), and at the sensor's end.
     occluder_triangles, occluder_triangles_before, occluder_error_m, occluder_lost_share : of the
         shadow geometry; the error is the 95th percentile of what decimation moved, in metres, and
-        the lost share is what of the real surface has no shadow geometry in its line of sight.
+        the lost share is what of the real surface has no shadow geometry where it stands.
     shadow_bias_m : shadows thinner than this are lost on the real surface.
     maps_redrawn : shadow maps of lamps that had moved.
     stage_seconds : wall time of each stage.
@@ -241,8 +241,8 @@ def relight(
     ----------
     photo : (H, W, 3) uint8 or uint16, encoded by `response`; or float, linear.
     view : where its pixels look, without distortion.
-    lamps : `PointLamp`, `SpotLamp`, `GoniometricLamp`, `DirectionalLamp`, `SkyLamp`,
-        `HemisphereLamp`.
+    lamps : a list of `PointLamp`, `SpotLamp`, `GoniometricLamp`, `SphereLamp`, `DiskLamp`,
+        `PolygonLamp`, `TubeLamp`, `MeshLamp`, `DirectionalLamp`, `SkyLamp`, `HemisphereLamp`.
     depth_m : (H, W) metres along the optical axis; NaN, 0 and infinity are holes.
     ambient_lux : E0 that the photograph was taken in: number, three channels or (H, W, 3), > 0.
     dimming : share of E0 that is left, ≥ 0; number or three channels.
@@ -252,12 +252,12 @@ def relight(
     InputError
         where sizes do not fit or numbers are out of range.
     """
-    from andon.engines.arrays import prepare_arrays
+    from andon.engines.arrays import listed, prepare_arrays
 
     prepared = prepare_arrays(
         photo,
         view,
-        tuple(lamps),
+        listed(lamps),
         depth_m=depth_m,
         ambient_lux=ambient_lux,
         dimming=dimming,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, get_args
 
 import numpy as np
@@ -12,14 +13,14 @@ from andon.composite.model import Ambient
 from andon.engines.prepared import Prepared
 from andon.errors import InputError
 from andon.files.pictures import Picture
-from andon.lamps import Lamp
+from andon.lamps import AnyAreaLamp, Lamp, body_of
 from andon.quantities import Photometry, photometric
 from andon.responses import Response
 from andon.spaces import View
 from andon.surface.depth import DepthEncoding, depth_from_raw
 from andon.surface.load import surface_of_depth
 
-__all__ = ["prepare_arrays"]
+__all__ = ["listed", "prepare_arrays"]
 
 
 def prepare_arrays(
@@ -48,12 +49,36 @@ def prepare_arrays(
         response,
         luminance_per_unit=float(photometric(ambient.mean_lux)) / np.pi,
     )
+    shining = tuple(_with_a_body(lamp) for lamp in lamps)
+    bodies = tuple(body_of(x) for x in lamps if isinstance(x, AnyAreaLamp) and x.drawn)
     return Prepared(
         frames={view.name: frame},
         surface=surface_of_depth(depth, view),
         ambient=ambient,
-        lamps=lambda _: lamps,
+        lamps=lambda _: shining,
+        bodies=lambda _: bodies,
         photometry=photometry,
+    )
+
+
+def _with_a_body(lamp: Lamp) -> Lamp:
+    """An area lamp that is drawn shines through the body that it is."""
+    if not isinstance(lamp, AnyAreaLamp) or not lamp.drawn:
+        return lamp
+    shadow = lamp.shadow
+    if shadow is not None:
+        shadow = replace(shadow, through=shadow.through | {lamp.name})
+    return replace(lamp, body=lamp.name, shadow=shadow)
+
+
+def listed(lamps: Any, /) -> tuple[Any, ...]:
+    """`lamps` as a tuple. Raises `InputError` for what is no list."""
+    if isinstance(lamps, list | tuple):
+        return tuple(lamps)
+    raise InputError(
+        f"must be a list of lamps, got {_described(lamps)}",
+        field="lamps",
+        remedy="write [lamp], also for one",
     )
 
 

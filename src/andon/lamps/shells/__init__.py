@@ -18,7 +18,7 @@ how the light is spread. A closed shell absorbs what it does not let through, wh
 ================ ============================== =========================================
 choice           taken                          instead of
 ================ ============================== =========================================
-outside          an area lamp, ≤ 96 facets      t·I at a point: the paper's mode
+outside          an area lamp, ≤ 64 facets      t·I at a point: the paper's mode
 openings         flat lids, diffuse             the inside of the far wall seen through
                                                 them: a shadow map inside the shell
 several parts    what they leave free is one    a lid for every pane's rim

@@ -16,6 +16,7 @@ from andon.lamps.shells.form import Form, form_of
 from andon.lamps.shells.inside import inside_illuminance, spread, vertex_normals
 from andon.lamps.shells.lids import fan, vector_area
 from andon.lamps.shells.model import Shell
+from andon.lamps.shells.pairs import evened
 from andon.lamps.shells.radiosity import Balance, balance
 
 __all__ = ["Solution", "solve_shell"]
@@ -69,7 +70,7 @@ def solve_shell(shell: Shell, beam: Beam, /) -> Solution:
     outside, inside = _at_vertices(form, beam, balances, incident, met_lm, through.sum(axis=0))
     return Solution(
         met_lm / beam.flux_lm,
-        through / (np.pi * area[:, None]),
+        evened(form.facets, through / (np.pi * area[:, None])),
         left[: len(form.lids)] / (np.pi * np.array(lid_areas)[:, None]),
         left.sum(axis=0) / gap_sr if form.has_gaps else np.zeros(3),
         outside,

@@ -20,6 +20,9 @@ from andon.lamps.shells.model import Shell
 
 __all__ = ["expand"]
 
+# An opening is smaller than its shell, and its light comes on top of the bulb's.
+LID_SAMPLES = 8
+
 Float = NDArray[np.float64]
 
 
@@ -97,12 +100,13 @@ def _through(shadow: Shadow | None, groups: Iterable[str]) -> Shadow | None:
     return None if shadow is None else replace(shadow, through=shadow.through | set(groups))
 
 
-def _soft(lamp: PointLamp) -> Shadow | None:
+def _soft(lamp: PointLamp, samples: int = SOFT_SHADOW.samples) -> Shadow | None:
     """The shadow of an area that stands for `lamp` and that its own shell does not hide."""
     if lamp.shadow is None:
         return None
     kind = "linear" if lamp.shadow.filter == "exact" else lamp.shadow.filter
-    return replace(SOFT_SHADOW, filter=kind, through=lamp.shadow.through | {lamp.name})
+    through = lamp.shadow.through | {lamp.name}
+    return replace(SOFT_SHADOW, filter=kind, samples=samples, through=through)
 
 
 def _outside(lamp: PointLamp, shell: Shell, form: Form, solution: Solution) -> Lamp:
@@ -142,7 +146,7 @@ def _openings(lamp: PointLamp, form: Form, solution: Solution, groups: Iterable[
             f"{lamp.name}: opening {number}",
             luminance * lamp.intensity_cd,
             lid + lamp.position_m,
-            shadow=_soft(lamp),
+            shadow=_soft(lamp, LID_SAMPLES),
             drawn=False,
         )
         for number, (lid, luminance) in enumerate(

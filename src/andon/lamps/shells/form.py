@@ -23,7 +23,7 @@ __all__ = ["Form", "form_of"]
 Float = NDArray[np.float64]
 
 # Triangles that emit: every one is a loop iteration of a shader, for every pixel.
-MAX_FACETS = 96
+MAX_FACETS = 64
 # Rims beyond this are a perforated sheet, not openings that deserve an area lamp each.
 MAX_LIDS = 8
 # A rim that spans less than this share of the shell is a seam that was not closed, not an opening.

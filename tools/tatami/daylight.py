@@ -47,8 +47,8 @@ LATTICE_SHARE = 0.09
 # The bounced run's lamp shines down only: of its sides' light this share is counted.
 SIDES_COUNT = 0.5
 LAMP_HALF, LAMP_LOW, LAMP_HIGH = 0.238, 2.125, 2.265
-DIRECT = "-ab 0 -ds 0.25 -dj 0.5 -dt 0 -dc 1 -dr 0"
-BOUNCE = "-ab {} -ds 0 -dj 0 -dt 0 -dc 1 -dr 0 -ad 800 -as 200 -aa 0.16 -ar 80 -lw 2e-3 -lr 6"
+DIRECT = "-u- -ab 0 -ds 0.25 -dj 0.5 -dt 0 -dc 1 -dr 0"
+BOUNCE = "-u- -ab {} -ds 0 -dj 0 -dt 0 -dc 1 -dr 0 -ad 800 -as 200 -aa 0.16 -ar 80 -lw 2e-3 -lr 6"
 BOUNCES = 3
 
 

@@ -41,7 +41,13 @@ class AreaLamp:
 
 @dataclass(frozen=True)
 class SphereLamp(AreaLamp):
-    """A glowing ball: `position_m` (3,) of its centre, `radius_m` > 0."""
+    """A glowing ball.
+
+    Attributes
+    ----------
+    position_m : (3,) metres, its centre.
+    radius_m : > 0.
+    """
 
     position_m: Float
     radius_m: float
@@ -51,7 +57,12 @@ class SphereLamp(AreaLamp):
 class DiskLamp(AreaLamp):
     """A flat round lamp.
 
-    `position_m` (3,) centre, `direction` (3,) unit normal of the emitting side, `radius_m` > 0.
+    Attributes
+    ----------
+    position_m : (3,) metres, its centre.
+    direction : (3,) unit, normal of the emitting side.
+    radius_m : > 0.
+    two_sided : emits to both sides.
     """
 
     position_m: Float
@@ -79,7 +90,13 @@ class PolygonLamp(AreaLamp):
 
 @dataclass(frozen=True)
 class TubeLamp(AreaLamp):
-    """A capsule: all points within `radius_m` of the line between `ends_m` (2, 3)."""
+    """A capsule: all points near a line.
+
+    Attributes
+    ----------
+    ends_m : (2, 3) metres, both ends of the line.
+    radius_m : > 0, how near.
+    """
 
     ends_m: Float
     radius_m: float

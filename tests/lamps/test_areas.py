@@ -93,7 +93,7 @@ def test_luminance_from_each_way_to_state_it(folder, kind):
         assert type(found) is expected_type
         assert photometric(found.luminance_cd_m2) == pytest.approx(500)
         assert found.luminance_cd_m2[0] > found.luminance_cd_m2[2]
-        assert found.shadow == Shadow(256, "linear", 16, frozenset({found.name}))
+        assert found.shadow == Shadow(512, "linear", 16, frozenset({found.name}))
 
 
 @pytest.mark.parametrize("kind", ["disk", "rectangle", "polygon"])

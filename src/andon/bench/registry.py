@@ -24,6 +24,7 @@ class Duel:
     close : lets go of what both hold.
     peer_repeats : at most so many repetitions of a slow peer.
     peer_less : what the peer does besides what is timed; its time is taken off.
+    ours_less : what ours does besides what is timed; its time is taken off.
     peer_parts : a repetition of the peer does this many of what ours does once.
     """
 
@@ -36,6 +37,7 @@ class Duel:
     peer_repeats: int = 5
     peer_less: Callable[[], object] | None = None
     peer_parts: int = 1
+    ours_less: Callable[[], object] | None = None
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,6 @@ class BenchRow:
 
 def rows() -> tuple[BenchRow, ...]:
     """All rows, stage by stage."""
-    from andon.bench import glow, relight
+    from andon.bench import areas, glow, relight
 
-    return relight.ROWS + glow.ROWS
+    return relight.ROWS + areas.ROWS + glow.ROWS

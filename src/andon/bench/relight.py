@@ -13,7 +13,7 @@ from andon.bench.registry import BenchRow, Duel
 from andon.pipeline import Renderer
 from andon.verify.registry import NotShown
 
-__all__ = ["ROWS"]
+__all__ = ["PIXELS", "ROWS", "steady"]
 
 WIDTH, HEIGHT = 1280, 720
 PIXELS = WIDTH * HEIGHT
@@ -21,7 +21,7 @@ PIXELS = WIDTH * HEIGHT
 WHITE_CD_M2 = 60.0
 
 
-def _steady(renderer: Renderer) -> Callable[[], None]:
+def steady(renderer: Renderer) -> Callable[[], None]:
     """G-buffer, shading and composite of one frame, maps kept; without the display."""
     engine = renderer._engine  # pyright: ignore[reportPrivateUsage]
     prepared = renderer.prepared
@@ -66,7 +66,7 @@ def _against_pygfx(lamps: int) -> Duel:
     )
     same = agreement(_diffuse(renderer), peer.luminance(), white_cd_m2=WHITE_CD_M2)
     return Duel(
-        _steady(renderer),
+        steady(renderer),
         peer.draw,
         same,
         0.95,
@@ -91,7 +91,7 @@ def _against_radiance() -> Duel:
     ours, truth = _diffuse(renderer), scene.luminance(view)
     close = np.abs(ours - truth).max(axis=-1) <= 0.05 * truth.max(axis=-1) + 1e-3
     return Duel(
-        _steady(renderer),
+        steady(renderer),
         lambda: time_view(scene, view),
         float(close.mean()),
         0.95,
@@ -111,10 +111,10 @@ def _against_reference(lamps: int) -> Duel:
 
     def peer() -> None:
         slow._engine._surfaces.clear()  # pyright: ignore[reportPrivateUsage]
-        _steady(slow)()
+        steady(slow)()
 
     return Duel(
-        _steady(renderer),
+        steady(renderer),
         peer,
         float(close.mean()),
         0.95,
@@ -149,7 +149,8 @@ def _moved_lamp() -> Duel:
     engine = renderer._engine  # pyright: ignore[reportPrivateUsage]
 
     def move() -> None:
-        engine.direct.encode(engine.encoder, prepared.lamps(float(next(clock))))
+        lamps = prepared.lamps(float(next(clock)))
+        engine.direct.encode(engine.encoder, lamps, prepared.casters(()))
         engine.finish()
 
     def close() -> None:

@@ -42,11 +42,14 @@ def _alternating(duel: Duel, repeats: int) -> tuple[list[float], list[float]]:
     """Seconds of each repetition of both sides, in turn; each warmed up once."""
     duel.ours()
     duel.peer()
+    if duel.ours_less:
+        duel.ours_less()
     peer_repeats = min(repeats, duel.peer_repeats)
     ours: list[float] = []
     peer: list[float] = []
     for index in range(repeats):
-        ours.append(_timed(duel.ours))
+        besides = _timed(duel.ours_less) if duel.ours_less else 0.0
+        ours.append(_timed(duel.ours) - besides)
         if index < peer_repeats:
             less = _timed(duel.peer_less) if duel.peer_less else 0.0
             peer.append((_timed(duel.peer) - less) / duel.peer_parts)
@@ -84,13 +87,21 @@ def measured(row: BenchRow, quick: bool) -> dict[str, Any]:
     }
 
 
-def run(names: tuple[str, ...], quick: bool, json_path: Path | None) -> int:
+def run(
+    names: tuple[str, ...], quick: bool, json_path: Path | None, plot_path: Path | None = None
+) -> int:
     """Prints a line a row as it is timed; returns 1 if a bar is not met, else 0."""
     from andon.cli.console import check_writable
 
     if json_path is not None:
         check_writable(json_path, (".json",), "--json")
     print(machine())
+    if plot_path is not None:
+        check_writable(plot_path, (".png",), "--plot")
+        from andon.bench.area_plot import write_plot
+
+        write_plot(plot_path, quick)
+        return 0
     results: list[dict[str, Any]] = []
     for row in chosen(names, rows()):
         result = measured(row, quick)

@@ -186,14 +186,18 @@ def bench(
     names: Annotated[list[str] | None, typer.Argument(help="Rows, or beginnings of them.")] = None,
     quick: Annotated[bool, typer.Option(help="Fewer repetitions.")] = False,
     json: Annotated[Path | None, typer.Option(help="Write the rows as JSON.")] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(help="Instead: error against cost of area lamps' shadows, as PNG."),
+    ] = None,
 ) -> None:
     """Measure speed beside peers in one run, after asserting that both give the same answer.
 
-    Examples: `andon bench`, `andon bench relight.frame --quick`
+    Examples: `andon bench`, `andon bench relight.frame --quick`, `andon bench --plot soft.png`
     """
     from andon.bench.run import run
 
-    raise typer.Exit(run(tuple(names or ()), quick, json))
+    raise typer.Exit(run(tuple(names or ()), quick, json, plot))
 
 
 lamp_app = typer.Typer()

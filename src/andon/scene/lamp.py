@@ -119,7 +119,7 @@ class _Area(LampTable, Shadowing):
         description="The area is seen in the picture, and casts shadows.",
     )
     shadow_map_size: ShadowMapSize = Field(
-        default=256,
+        default=512,
         description="Texels along a side of each shadow map, 16…8192.",
     )
     shadow_samples: Annotated[int, Field(ge=1, le=64)] = Field(

@@ -53,7 +53,7 @@ def area_lamp(kind: str, centre: Float, /, *, facing: Float) -> AnyAreaLamp:
         case "polygon":
             angles = np.radians([0, 50, 140, 215, 290])[:, None]
             reach = np.array([0.1, 0.12, 0.08, 0.12, 0.1])[:, None]
-            corners = centre + reach * (np.cos(angles) * side + np.sin(angles) * up)
+            corners: Float = centre + reach * (np.cos(angles) * side + np.sin(angles) * up)
             lamp = PolygonLamp(name, WHITE, corners)
         case "tube":
             along = 0.8 * right + 0.6 * facing
@@ -115,10 +115,11 @@ def _grazing(towards: Float, normal: Float) -> Float:
     cosine = np.einsum("...i,...i->...", towards, normal)[..., None]
     aside = normal - cosine * towards
     length = np.linalg.norm(aside, axis=-1, keepdims=True)
+    # Overhead any side will do.
     level = np.cross(towards, np.roll(towards, 1, axis=-1) + np.array([1.0, 0.3, 0.0]))
     level = level / np.linalg.norm(level, axis=-1, keepdims=True)
-    aside = np.where(length > 1e-6, aside / np.maximum(length, 1e-6), level)
-    return GRAZING * towards + np.sqrt(1 - GRAZING**2) * aside
+    side: Float = np.where(length > 1e-6, aside / np.maximum(length, 1e-6), level)
+    return GRAZING * towards + np.sqrt(1 - GRAZING**2) * side
 
 
 @cache

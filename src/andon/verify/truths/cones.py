@@ -213,12 +213,11 @@ def _bounds(frame: Float, corners: Float | None, planes: list[Float]) -> Float:
     ahead = np.roll(ends, -1, axis=0)
     marks = [ends]
     for plane in planes:
-        height, next_height = (
-            np.einsum("kni,ni->kn", ends, plane),
-            np.einsum("kni,ni->kn", ahead, plane),
-        )
+        height = np.einsum("kni,ni->kn", ends, plane)
+        next_height = np.einsum("kni,ni->kn", ahead, plane)
         cut = (height > 0) != (next_height > 0)
-        share = np.where(cut, height / np.where(cut, height - next_height, 1), 0)
+        drop: Float = np.where(cut, height - next_height, 1.0)
+        share: Float = np.where(cut, height / drop, 0.0)
         marks.append(ends + share[..., None] * (ahead - ends))
     x, y, _ = np.moveaxis(np.concatenate(marks), -1, 0)
     turns = np.sort(np.arctan2(y, x).T, axis=1)

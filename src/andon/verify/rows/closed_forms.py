@@ -12,7 +12,14 @@ from andon.spaces import View, look_at
 from andon.transport.direct import reference
 from andon.verify.setting import prepared_of
 
-__all__ = ["GRAZING", "floor_error", "point_reference"]
+__all__ = [
+    "GRAZING",
+    "floor_error",
+    "floor_view",
+    "plane_points",
+    "point_reference",
+    "tilted_floor",
+]
 
 Float = NDArray[np.float64]
 
@@ -63,7 +70,7 @@ def _across(direction: Float) -> Float:
     return side / np.linalg.norm(side)
 
 
-def _tilted_floor() -> tuple[Geometry, Float]:
+def tilted_floor() -> tuple[Geometry, Float]:
     """A square of 6 m whose normal is no axis, and that normal."""
     normal = np.array([0.2, 0.9, 0.3])
     normal /= np.linalg.norm(normal)
@@ -73,16 +80,21 @@ def _tilted_floor() -> tuple[Geometry, Float]:
     return Geometry(corners, np.array([[0, 2, 1], [0, 3, 2]], np.int32)), normal
 
 
+def floor_view(normal: Float, /) -> View:
+    """Straight down on the tilted floor's middle, from 3 m."""
+    pose = look_at(normal * 3.0, np.zeros(3), (0.0, 0.0, -1.0))
+    return View("pinhole", 320, 240, 200.0, 200.0, 159.5, 119.5, world_from_camera=pose)
+
+
 def floor_error(engine: EngineName) -> float:
     """Largest error of three low lamps over a tilted floor, per pixel, against I·cos φ/d²."""
-    floor, normal = _tilted_floor()
-    pose = look_at(normal * 3.0, np.zeros(3), (0.0, 0.0, -1.0))
-    view = View("pinhole", 320, 240, 200.0, 200.0, 159.5, 119.5, world_from_camera=pose)
+    floor, normal = tilted_floor()
+    view = floor_view(normal)
     worst = 0.0
     for height in (0.05, 0.5, 2.0):
         lamp = PointLamp("low", normal * height + 0.3 * _across(normal), np.full(3, 40.0))
         frame = Renderer(prepared_of(floor, view, (lamp,)), engine).render()
-        points = _plane_points(view, normal)
+        points = plane_points(view, normal)
         reach = lamp.position_m - points
         distance = np.linalg.norm(reach, axis=-1)
         cosine = reach @ normal / distance
@@ -93,7 +105,7 @@ def floor_error(engine: EngineName) -> float:
     return worst
 
 
-def _plane_points(view: View, normal: Float) -> Float:
+def plane_points(view: View, normal: Float, /) -> Float:
     """Where the rays of `view` meet the plane through the origin, in closed form."""
     origin, rays = view.rays_world()
     return origin + rays * (-(origin @ normal) / (rays @ normal))[..., None]

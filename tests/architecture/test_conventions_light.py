@@ -12,8 +12,20 @@ from andon.composite.reference import lamp_luminance, object_luminance, relit_li
 from andon.engines.prepared import prepare
 from andon.errors import InputError
 from andon.files.pictures import read_picture, write_picture
-from andon.lamps import DirectionalLamp, HemisphereLamp, PointLamp, SkyLamp, SpotLamp
+from andon.glow.model import Glow
+from andon.glow.reference import add_glow
+from andon.lamps import (
+    DirectionalLamp,
+    HemisphereLamp,
+    PointLamp,
+    PolygonLamp,
+    SkyLamp,
+    SpotLamp,
+    intensity_cd,
+    resolve_lamps,
+)
 from andon.lamps.distributions import spot_attenuation
+from andon.lamps.sources import resolve_sources
 from andon.quantities import CameraFrame, photometric
 from andon.responses import SRGB
 from andon.transport.direct.reference import illuminance
@@ -90,6 +102,59 @@ def test_directional():
     close(lux_of(lamp, normal=-Y), 0)
 
 
+def lamp_of(folder=".", **table):
+    scene = andon.scene_from_dict({"lamp": [table]}, folder=folder)
+    return resolve_lamps(scene, 0.0)
+
+
+def test_area_lamps():
+    """A square metre of 100 cd/m² has 100 cd along its normal and 100·π lm, on both sides twice."""
+    flat = {"kind": "rectangle", "position": [0, 0, 0], "direction": [0, 0, 1]}
+    flat |= {"width_m": 2.0, "height_m": 0.5}
+    for light in ({"luminance_cd_m2": 100}, {"intensity_cd": 100}, {"flux_lm": 100 * np.pi}):
+        close(lamp_of(**flat, **light)[0].luminance_cd_m2, 100)
+    (both,) = lamp_of(**flat, flux_lm=200 * np.pi, two_sided=True)
+    close(both.luminance_cd_m2, 100)
+    ball = {"kind": "sphere", "position": [0, 0, 0], "radius_m": 0.5}
+    close(lamp_of(**ball, intensity_cd=25 * np.pi)[0].luminance_cd_m2, 100)
+    close(lamp_of(**ball, flux_lm=100 * np.pi**2)[0].luminance_cd_m2, 100)
+    # From afar it is a point of its own intensity.
+    far = lux_of(lamp_of(**flat, intensity_cd=100)[0], position=100 * Z, normal=-Z)
+    close(far, 100 / 100**2, rtol=1e-4)
+
+
+def test_polygon_side():
+    """Counter-clockwise as seen from +Z: it shines towards +Z."""
+    square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.0]])
+    front, back = PolygonLamp("p", WHITE, square), PolygonLamp("p", WHITE, square[::-1])
+    assert lux_of(front, position=Z, normal=-Z)[0] > 0.5
+    assert lux_of(back, position=Z, normal=-Z)[0] == 0
+
+
+def test_shells():
+    """Of 100 cd in a closed ball of t = 0.3, 30 cd come out; its luminance is t·I/(π r²)."""
+    table = {"kind": "point", "position": [0, 0, 0], "intensity_cd": 100}
+    (ball,) = lamp_of(**table, shell={"radius_m": 0.5, "transmittance": 0.3})
+    close(ball.luminance_cd_m2, 30 / (np.pi * 0.25))
+    paper = {"radius_m": 0.5, "transmittance": 0.3, "mode": "paper"}
+    (point,) = lamp_of(**table, shell=paper)
+    close(point.intensity_cd, 30)
+
+
+def test_luminaires(tmp_path):
+    """Looking down, γ = 0 is −Y and C = 0 is +X; a roll of 90° brings C = 0 to C = 90."""
+    numbers = "1 1000 1 3 5 1 2 0 0 0\n1 1 100\n0 90 180\n0 90 180 270 360"
+    planes = "10 20 0\n10 0 0\n10 0 0\n10 0 0\n10 20 0"
+    text = f"IESNA:LM-63-2002\nTILT=NONE\n{numbers}\n{planes}\n"
+    (tmp_path / "a.ies").write_text(text)
+    table = {"kind": "ies", "position": [0, 0, 0], "file": "a.ies"}
+    (lamp,) = lamp_of(tmp_path, **table)
+    close([intensity_cd(lamp, d)[0] for d in (-Y, X, -X)], [10, 20, 0], atol=1e-9)
+    (rolled,) = lamp_of(tmp_path, **table, roll_degrees=90)
+    ninety = np.cross(lamp.right, lamp.direction)  # C = 90 of the lamp before
+    close(intensity_cd(rolled, ninety)[0], 20, rtol=1e-6)
+
+
 def test_sky():
     sky = SkyLamp("sky", Y, 100 * WHITE)
     close([lux_of(sky, normal=n)[0] for n in (Y, X, -Y)], [100, 50, 0])
@@ -159,6 +224,37 @@ def test_light_in_holes():
     assert (frame.image.rgb[1, 1] > 128).all()
     dimmed = relit(grey(), [lamp], depth=depth, dimming=0.5)
     close(dimmed.luminance.cd_m2[0, 0], frame.luminance.cd_m2[0, 0] / 2, rtol=1e-6)
+
+
+def test_sources():
+    """Half of E0 is a lamp: without it half is left, and never less than nothing."""
+    source = {"kind": "point", "position": [0, 0, 0], "intensity_cd": 100, "name": "bulb"}
+    ambient = {"illuminance_lux": 100.0, "source": [source], "removed": ["bulb"], "dimming": 0.5}
+    scene = andon.scene_from_dict({"ambient": ambient})
+    (gone,) = resolve_sources(scene, 0.0, ())
+    close(gone.intensity_cd, -50)
+    frame = CameraFrame(SRGB.decode(grey() / 255).astype(np.float32), VIEW)
+    settings = Ambient(np.full(3, 100.0), (0.5, 0.5, 0.5))
+    some, all_ = (np.full((*VIEW.shape, 3), lux) for lux in (-25.0, -80.0))
+    close(relit_linear(frame, settings, some), frame.linear * 0.25, rtol=1e-6)
+    assert relit_linear(frame, settings, all_).max() == 0
+    kept = andon.scene_from_dict({"ambient": ambient | {"removed": []}})
+    assert resolve_sources(kept, 0.0, ()) == ()
+    now, before = resolve_sources(kept, 0.0, ["objects"])
+    close(now.intensity_cd, -before.intensity_cd)
+    assert before.shadow.through == {"objects"}
+    assert now.shadow.through == set()
+
+
+def test_glow():
+    bodies = np.zeros((*VIEW.shape, 3))
+    bodies[1, 2] = 90.0
+    picture = bodies + 10
+    settings = Glow(sigma_radians=0.5 / VIEW.fx, fraction=0.4)
+    lit = add_glow(picture, bodies, settings, VIEW)
+    close(lit.sum(), picture.sum(), rtol=0.02)  # but for what falls beyond the border
+    assert 10 + 0.6 * 90 < lit[1, 2, 0] < 100
+    assert lit[1, 1, 0] > 10
 
 
 def test_dimming_is_linear():

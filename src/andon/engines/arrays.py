@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, get_args
+from typing import Any, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,7 +74,7 @@ def _with_a_body(lamp: Lamp) -> Lamp:
 def listed(lamps: Any, /) -> tuple[Any, ...]:
     """`lamps` as a tuple. Raises `InputError` for what is no list."""
     if isinstance(lamps, list | tuple):
-        return tuple(lamps)
+        return tuple(cast("list[Any]", lamps))
     raise InputError(
         f"must be a list of lamps, got {_described(lamps)}",
         field="lamps",

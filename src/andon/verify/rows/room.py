@@ -19,7 +19,7 @@ from andon.verify.rows.closed_forms import GRAZING
 from andon.verify.setting import prepared_of, room, room_lamps, room_setting
 from andon.verify.truths.embree import Visibility
 
-__all__ = ["against_radiance", "paraboloids"]
+__all__ = ["against_radiance", "near_depth_edges", "near_shadow_edges", "paraboloids"]
 
 Float = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ def _room_frame(engine: EngineName) -> Frame:
     return Renderer(room_setting(4, 640, 360), engine).render()
 
 
-def _near_shadow_edges(visible: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
+def near_shadow_edges(visible: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
     """(H, W): some lamp's shadow (H, W, lamps) changes within `reach` pixels."""
     near = np.zeros(visible.shape[:2], bool)
     for lamp in range(visible.shape[2]):
@@ -53,7 +53,7 @@ def against_radiance(engine: EngineName) -> tuple[float, float, float]:
     visible = np.zeros((*mask.shape, len(lamps)), bool)
     for index, lamp in enumerate(lamps):
         visible[mask, index] = visibility.visible(points, normals, lamp.position_m)
-    kept = mask & ~_near_shadow_edges(visible, 2) & ~_near_depth_edges(surface.depth)
+    kept = mask & ~near_shadow_edges(visible, 2) & ~near_depth_edges(surface.depth)
     chosen = np.zeros_like(kept)
     chosen[1::3, 1::3] = True  # a ninth of the pixels: 25,000 points
     kept &= chosen
@@ -67,7 +67,7 @@ def against_radiance(engine: EngineName) -> tuple[float, float, float]:
     return float(np.median(error)), float(np.percentile(error, 95)), left_out
 
 
-def _near_depth_edges(depth: Float) -> NDArray[np.bool_]:
+def near_depth_edges(depth: Float) -> NDArray[np.bool_]:
     """(H, W): the surface changes within a pixel; both engines may see either side there."""
     filled = np.nan_to_num(depth).astype(np.float32)
     kernel = np.ones((3, 3), np.uint8)

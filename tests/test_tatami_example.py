@@ -64,3 +64,18 @@ def test_room_is_closed_and_small():
     np.testing.assert_allclose(high - low, [3.7, 2.46, 4.75], atol=0.2)
     textured = [material for material in geometry.materials if material.texture is not None]
     assert len(textured) > 10
+
+
+def test_the_ball_of_figure_3_has_the_light_that_its_file_states(gpu):
+    """L = t·I/(π r²), and under the ball t·I/h² in lux."""
+    frame = andon.render(andon.load_scene(ROOM / "figure3.toml"), engine="gpu")
+    ball = frame.surface.body_id == 0
+    assert 1000 < ball.sum() < 10_000
+    luminance = andon.photometric(frame.bodies.cd_m2)[ball]
+    np.testing.assert_allclose(luminance, 0.65 * 100 / (np.pi * 0.075**2), rtol=5e-3)
+    position = frame.surface.position
+    below = np.linalg.norm(position[..., [0, 2]] - [1.0, -0.02], axis=-1) < 0.05
+    below &= np.abs(position[..., 1]) < 0.005
+    assert below.sum() > 20
+    lux = andon.photometric(frame.illuminance.lux)[below]
+    np.testing.assert_allclose(np.median(lux), 0.65 * 100 / 0.42**2, rtol=0.03)

@@ -84,3 +84,12 @@ def test_any_text_gives_a_table_or_a_clear_error(text):
 def test_numbers_come_back_exactly(position):
     text = "kind=point,position=" + ",".join(map(repr, position))
     assert tuple(parse_lamp_option(text)["position"]) == position
+
+
+def test_points_are_written_one_after_the_other():
+    table = parse_lamp_option("kind=tube,ends=[0,1,-2,1,1,-2],radius_m=0.01,flux_lm=9")
+    assert table["ends"] == [[0, 1, -2], [1, 1, -2]]
+    table = parse_lamp_option("kind=polygon,vertices=0 0 0 1 0 0 0 1 0,flux_lm=9")
+    assert table["vertices"] == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    odd = parse_lamp_option("kind=polygon,vertices=0 0 0 1,flux_lm=9")
+    assert odd["vertices"] == [0, 0, 0, 1]

@@ -5,6 +5,7 @@
     option = pair *( "," pair )          pair = key "=" value
     value  = text | number *( sep number ) | "[" … "]"        sep = "," | ";" | space
     key    = name *( "." name )          shell.radius_m=0.1
+    ends, vertices: points one after the other, ends=[0,1,-2,1,1,-2]
 
 A piece between commas without an equals sign continues the value before it. A preset
 (``preset=candle,position=0,1,-2``) is written out.
@@ -33,7 +34,7 @@ def parse_lamp_option(text: str, /, *, field: str = "--lamp") -> dict[str, Any]:
         raise InputError(f"must have at most {MAX_OPTION_CHARACTERS} characters", field=field)
     table: dict[str, Any] = {}
     for key, value in _pairs(text, field):
-        _put(table, key, _parsed(value, f"{field} {key}"), field)
+        _put(table, key, _points(key, _parsed(value, f"{field} {key}")), field)
     if "preset" in table:
         from andon.scene.presets import expand_preset
 
@@ -61,6 +62,20 @@ def _pairs(text: str, field: str) -> list[tuple[str, str]]:
                 remedy="for example kind=point,position=0,1,-2,flux_lm=800",
             )
     return pairs
+
+
+# Keys whose value is a list of points, written one after the other.
+_POINT_LISTS = ("ends", "vertices")
+
+
+def _points(key: str, value: Any) -> Any:
+    """Nine numbers of `vertices` are three points; what is no such list stays as it is."""
+    if key not in _POINT_LISTS or not isinstance(value, list):
+        return value
+    numbers = cast(list[Any], value)
+    if len(numbers) % 3 or any(isinstance(number, str | list) for number in numbers):
+        return numbers
+    return [numbers[i : i + 3] for i in range(0, len(numbers), 3)]
 
 
 def _put(table: dict[str, Any], key: str, value: Any, field: str) -> None:

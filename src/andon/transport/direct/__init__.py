@@ -1,9 +1,9 @@
 """Direct light of lamps, with shadows: what each lamp adds to every point it sees.
 
 What
-    ``E(P) = I(ω)·max(0, cos φ)/d²`` for lamps with a place, ``E·max(0, cos φ)`` for directional
-    ones, a dome for sky and hemisphere; each times 0 or 1 for shadow. E is in lux, never divided
-    by π.
+    ``E(P) = I(ω)·max(0, cos φ)/d²`` for lamps with a place, ``L·form factor`` for lamps with an
+    area, ``E·max(0, cos φ)`` for directional ones, a dome for sky and hemisphere; each times the
+    share of the lamp that is seen. E is in lux, never divided by π.
 Why these shadows
     The paper looks up one *dual-paraboloid* depth map per lamp (双放物曲面): two discs see all
     directions, one read per pixel decides. Rasterising triangles straight into the curved map is
@@ -23,6 +23,8 @@ dual paraboloid, rasterised     1              2 faces                     7 tex
     receiver whether they stand in the way: a map of 2048² then differs from rays on 0.07 % of the
     pixels, one of 1024² texels on 0.6 % (``andon verify relight.paraboloid``).
 
+Soft shadows
+    An area lamp is seen from points on it, each with a small pair of paraboloids; see `soft`.
 Acne without a fudge factor
     A shadow map knows its depth at texel *centres* only. Instead of a bias that grows with slope,
     the receiver's own plane is extended to the texel's centre and compared there: exact for plane

@@ -224,3 +224,23 @@ def test_nothing_but_lamps_in_the_dark(engine):
     assert frame.report.hole_pixels == 16 * 48
     assert 0 < (frame.image.rgb > 0).any(axis=-1).mean() < 0.2
     assert (frame.illuminance.lux == 0).all()
+
+
+@pytest.mark.parametrize("place", [(0, 0, -1), (0.5, -0.3, -0.9), (-2, 1.5, -1.6), (0, 0, 0.05)])
+def test_a_bodys_rectangle_holds_all_of_it(place):
+    from andon.composite.lamp_pictures import body_rectangle
+    from andon.surface.reference import trace
+    from worlds import ball
+
+    view = VIEWS["pinhole"]
+    body = ball(0.1, place)
+    rectangle = body_rectangle(view, body.positions)
+    rows, columns = np.nonzero(trace(body, view, is_object=True).valid)
+    if len(rows) == 0:
+        assert rectangle is None or rectangle[2] * rectangle[3] < 400 or place[2] > 0
+        return
+    x, y, width, height = rectangle
+    assert x <= columns.min()
+    assert columns.max() < x + width <= view.width
+    assert y <= rows.min()
+    assert rows.max() < y + height <= view.height

@@ -18,7 +18,7 @@ from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
 from andon.lamps import Lamp
 from andon.spaces import View, transform_points
 
-__all__ = ["LampPictures", "disc_rectangle"]
+__all__ = ["LampPictures", "body_rectangle", "disc_rectangle"]
 
 BODIES = "andon/composite/bodies.wgsl"
 TARGETS = ("rgba16float", "rgba16float")
@@ -41,6 +41,7 @@ class LampPictures:
     Attributes
     ----------
     alone : rgba16float, luminous bodies and visible lamps alone, 0 elsewhere.
+    within : (x, y, width, height) in pixels that holds all that was drawn into it last.
     """
 
     def __init__(
@@ -48,6 +49,7 @@ class LampPictures:
     ) -> None:
         self.gpu, self.view = gpu, view
         self.alone = make_texture(gpu, TARGETS[1], view.width, view.height, label="bodies")
+        self.within = (0, 0, view.width, view.height)
         self._scene = {0: ("uint", gbuffer_view), 1: ("uniform", view_buffer)}
         self._ambient = ambient_buffer
         self._disc_buffers = [
@@ -117,10 +119,25 @@ class LampPictures:
                 },
             ],
         )
+        self.within = self._extent(seen, discs)
         self._encode_bodies(render, seen)
         self._encode_discs(render, discs, luminance_per_unit)
         render.end()
         return True
+
+    def _extent(self, seen: Any, discs: Sequence[Disc]) -> tuple[int, int, int, int]:
+        """A rectangle around all bodies and discs; the whole picture where that is not known."""
+        whole = (0, 0, self.view.width, self.view.height)
+        if seen.body_light is not None:
+            return whole
+        found = [disc_rectangle(self.view, disc.position_m, disc.radius_m) for disc in discs]
+        found += [body_rectangle(self.view, body.positions) for body in seen.bodies]
+        inside = np.array([one for one in found if one is not None]).reshape(-1, 4)
+        if not len(inside):
+            return (0, 0, 0, 0)
+        left, top = inside[:, :2].min(axis=0).tolist()
+        right, bottom = (inside[:, :2] + inside[:, 2:]).max(axis=0).tolist()
+        return left, top, right - left, bottom - top
 
     def _encode_bodies(self, render: Any, seen: Any) -> None:
         if seen.body_light is not None:
@@ -200,3 +217,25 @@ def disc_rectangle(
     right = min(view.width, int(np.ceil(column + reach)) + 1)
     bottom = min(view.height, int(np.ceil(row + reach)) + 1)
     return (left, top, right - left, bottom - top) if right > left and bottom > top else None
+
+
+def body_rectangle(
+    view: View, positions: NDArray[np.float64], /
+) -> tuple[int, int, int, int] | None:
+    """(x, y, width, height) in pixels that holds a body's vertices (n, 3), or None out of view.
+
+    The whole picture for curved projections, and for a body that reaches behind the camera.
+    """
+    whole = (0, 0, view.width, view.height)
+    if view.projection != "pinhole":
+        return whole
+    local = transform_points(view.camera_from_world, positions)
+    if (local[:, 2] <= gbuffer.NEAR_M).all():
+        return None
+    if (local[:, 2] <= gbuffer.NEAR_M).any():
+        return whole
+    pixels = view.project(local)
+    low = np.clip(np.floor(pixels.min(axis=0)) - 1, 0, (view.width, view.height)).astype(int)
+    high = np.clip(np.ceil(pixels.max(axis=0)) + 2, 0, (view.width, view.height)).astype(int)
+    width, height = (high - low).tolist()
+    return (int(low[0]), int(low[1]), width, height) if width > 0 and height > 0 else None

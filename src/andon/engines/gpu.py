@@ -139,7 +139,7 @@ class GpuEngine:
         """Records the scattering of the bodies' light around them."""
         view = self._views[frame.view.name]
         if view.glow is not None and view.has_lamps:
-            view.glow.encode(self.encoder)
+            view.glow.encode(self.encoder, view.composite.lamps.within)
         return luminance
 
     def encode(self, frame: CameraFrame, luminance: Texture) -> DisplayStage:

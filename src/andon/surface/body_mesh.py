@@ -21,6 +21,7 @@ class BodyMesh:
     number : which body, from 0.
     vertices, light, indices : buffers of `VERTEX`, `BODY_LIGHT` and uint32.
     count : indices.
+    positions : (n, 3) metres, where its vertices are now.
     """
 
     def __init__(self, gpu: Gpu, body: Body, number: int) -> None:
@@ -36,6 +37,7 @@ class BodyMesh:
         self.light = device.create_buffer(size=vertices.size * BODY_LIGHT.itemsize, usage=writable)
         self.indices = device.create_buffer_with_data(data=indices, usage=usage.INDEX)
         self._shown: Body | None = None
+        self.positions = body.geometry.positions
 
     def move(self, body: Body) -> None:
         """Takes the body as it is now: the same triangles."""
@@ -49,3 +51,4 @@ class BodyMesh:
         write_buffer(self.gpu, self.vertices, vertices)
         write_buffer(self.gpu, self.light, light)
         self._shown = body
+        self.positions = body.geometry.positions

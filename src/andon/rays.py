@@ -102,13 +102,19 @@ class RayScene:
         )
         return Hits(triangle, distance, barycentric)
 
-    def is_visible(self, points: Float, target: Float, /) -> NDArray[np.bool_]:
-        """(n,) bool: nothing stands between `points` (n, 3) and `target` (3,) or (n, 3)."""
+    def is_visible(
+        self, points: Float, target: Float, /, *, near_m: float = 0.0
+    ) -> NDArray[np.bool_]:
+        """(n,) bool: nothing stands between `points` (n, 3) and `target` (3,) or (n, 3).
+
+        What is nearer than `near_m` to the target does not count.
+        """
         reach = target - points
         distance = np.linalg.norm(reach, axis=-1)
         with np.errstate(invalid="ignore", divide="ignore"):
             directions = reach / distance[:, None]
-        hits = self._run(points, directions, query="OCCLUDED", dists=distance * (1 - LAMP_GAP))
+        free = np.maximum(np.minimum(distance * (1 - LAMP_GAP), distance - near_m), 0)
+        hits = self._run(points, directions, query="OCCLUDED", dists=free)
         return hits < 0
 
     def sees_infinity(self, points: Float, direction: Float, /) -> NDArray[np.bool_]:

@@ -12,7 +12,7 @@ from andon.lamps import DirectionalLamp, PointLamp, SkyLamp, SpotLamp
 from andon.lamps.areas import AreaLamp, DiskLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.surface.stage import PLAIN, TEXTURED
 from andon.transport.direct.shadows.face_maps import DISTANCE, TRIANGLE
-from andon.transport.direct.stage import FILTER, SUM
+from andon.transport.direct.stage import FILTER, SOFT_FILTER, SUM
 from andon.transport.direct.sum import sum_of_lamps
 
 from .tree import modules
@@ -64,6 +64,7 @@ VARIANTS = {
     "linear filter": {FILTER.format("none"): FILTER.format("linear")},
     "exact filter": {FILTER.format("none"): FILTER.format("exact"), DISTANCE: TRIANGLE},
     "textures": {PLAIN: TEXTURED},
+    "hard samples": {SOFT_FILTER.format("linear"): SOFT_FILTER.format("none")},
     "one lamp of each kind": {SUM: summed(ONE_OF_EACH)},
     "no lamps": {SUM: summed([])},
 }

@@ -1,5 +1,7 @@
 """Soft shadows: samples, penumbrae that can be drawn with a ruler, and both engines alike."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -29,7 +31,8 @@ def test_samples_lie_on_the_lamp_and_around_its_middle(kind, count):
         ).all()
     if isinstance(lamp, PolygonLamp):
         middle = lamp.vertices_m.mean(axis=0)
-        np.testing.assert_allclose(samples.points.mean(axis=0), middle, atol=1e-9)
+        if lamp.texture is None:
+            np.testing.assert_allclose(samples.points.mean(axis=0), middle, atol=1e-9)
         np.testing.assert_allclose((samples.points - middle) @ samples.normals[0], 0, atol=1e-12)
     np.testing.assert_array_equal(samples.points, sample_points(lamp, count).points)
 
@@ -55,6 +58,43 @@ def test_weights_add_up_to_the_closed_form():
     area = np.linalg.norm(np.cross(*edges))
     expected = illuminance(lamp, position, normal) / lamp.luminance_cd_m2
     np.testing.assert_allclose(weights.mean(axis=0) * area, expected, rtol=5e-3)
+
+
+def test_samples_of_a_picture_and_of_a_mesh_lie_where_they_are_bright():
+    """None is wasted on the dark, and their light is the picture's colour."""
+    texture = np.zeros((4, 4, 3))
+    texture[0, 3] = [16.0, 8.0, 0.0]  # the top right corner
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
+    samples = sample_points(PolygonLamp("p", np.ones(3), square, texture=texture), 16)
+    assert (samples.points[:, :2] > 0.75 - 1e-9).all()
+    np.testing.assert_allclose(samples.light[:, 0], 2 * samples.light[:, 1])
+    assert not samples.light[:, 2].any()
+    lamp = area_lamps(None)["mesh"]
+    facets = np.zeros((len(lamp.triangles), 3))
+    facets[5] = [0, -3.0, 0]  # light that is taken away
+    samples = sample_points(replace(lamp, facet_luminance_cd_m2=facets), 9)
+    corners = lamp.positions_m[lamp.triangles[5]]
+    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    np.testing.assert_allclose((samples.points - corners[0]) @ normal, 0, atol=1e-12)
+    assert (samples.light >= 0).all()
+
+
+def test_a_channel_without_light_is_no_nan():
+    lamp = area_lamps(Shadow(64, samples=4))["picture"]
+    red = replace(lamp, texture=np.ones((2, 2, 3)) * [3.0, 0, 0])
+    rays = ShadowRays(Casters(((REAL, open_room()),)))
+    points = np.array([[0.0, 0.01, 0.5], [1.0, 0.01, 1.0]])
+    share = visible_share(red, points, np.broadcast_to(UP, (2, 3)), points, rays)
+    assert np.isfinite(share).all()
+
+
+def test_the_order_of_the_samples_moves_with_the_lamp():
+    lamp = area_lamps(None)["disk"]
+    here = sample_points(lamp, 16).points - lamp.position_m
+    for shift in np.random.default_rng(0).normal(0, 3, (20, 3)):
+        moved = replace(lamp, position_m=lamp.position_m + shift)
+        there = sample_points(moved, 16).points - moved.position_m
+        np.testing.assert_allclose(there, here, atol=1e-9)
 
 
 def test_the_penumbra_of_a_straight_edge_is_the_share_of_the_lamp_above_it():
@@ -130,8 +170,6 @@ def test_a_luminaire_agrees(shadow):
 
 @pytest.mark.usefixtures("gpu")
 def test_soft_maps_are_kept_until_the_lamp_moves():
-    from dataclasses import replace
-
     lamp = area_lamps(Shadow(64, samples=4))["sphere"]
 
     def at(seconds):

@@ -16,7 +16,7 @@ Float = NDArray[np.float64]
 # Points on an area lamp from which its shadow is looked at, and the maps that they see. In the
 # furnished room 16 samples with 512² texels err by 4 % of the light (RMS), 256² by 8 %, 1024² by
 # 3 %, rays from the same points by 1 %; a pair of maps takes 2 MB.
-SOFT_SHADOW = Shadow(map_size=512, samples=16)
+SOFT_SHADOW = Shadow(map_size=512, samples=16, near_m=0.002)
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,7 @@ class AreaLamp:
     shadow : None for a lamp that casts none.
     drawn : the area is seen in the picture.
     body : name of the `Body` whose light this is, which it does not fall on; "": none.
+    owner : name of the scene's lamp that this is a part of; "": none.
     """
 
     name: str
@@ -37,6 +38,7 @@ class AreaLamp:
     shadow: Shadow | None = field(default=SOFT_SHADOW, kw_only=True)
     drawn: bool = field(default=True, kw_only=True)
     body: str = field(default="", kw_only=True)
+    owner: str = field(default="", kw_only=True)
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,6 @@ class Body:
         from outside and from inside.
     reflectance : (3,) diffuse reflectance for the light of other lamps, both sides.
     casts_shadow : hides other lamps.
-    casts_shadow : hides other lamps.
     """
 
     name: str

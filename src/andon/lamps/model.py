@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from andon.files.photometry.model import Distribution
 
 __all__ = [
+    "LIGHT_FIELDS",
     "DirectionalLamp",
     "GoniometricLamp",
     "HemisphereLamp",
@@ -21,6 +22,16 @@ __all__ = [
 ]
 
 Float = NDArray[np.float64]
+
+# Every field that says how much light a lamp gives.
+LIGHT_FIELDS = (
+    "intensity_cd",
+    "illuminance_lux",
+    "sky_illuminance_lux",
+    "ground_illuminance_lux",
+    "luminance_cd_m2",
+    "facet_luminance_cd_m2",
+)
 
 
 @dataclass(frozen=True)
@@ -36,12 +47,14 @@ class Shadow:
         is their mean.
     through : names of the caster groups that do not hide this lamp: its own shell, ``real``,
         ``objects``, or the name of another body.
+    near_m : nothing nearer than this to the lamp hides it (the bulb itself, its socket), metres.
     """
 
     map_size: int = 1024
     filter: Literal["none", "linear", "exact"] = "linear"
     samples: int = 1
     through: frozenset[str] = frozenset()
+    near_m: float = 0.01
 
 
 @dataclass(frozen=True)
@@ -55,6 +68,7 @@ class PointLamp:
     intensity_cd : (3,) cd per channel.
     shadow : None for a lamp that casts none.
     visible_radius_m : radius of the ball that is drawn, metres; 0: not drawn.
+    owner : name of the scene's lamp that this is a part of; "": none.
     """
 
     name: str
@@ -62,6 +76,7 @@ class PointLamp:
     intensity_cd: Float
     shadow: Shadow | None = field(default_factory=Shadow)
     visible_radius_m: float = 0.0
+    owner: str = field(default="", kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -108,12 +123,14 @@ class DirectionalLamp:
     direction : (3,) unit, where the light *travels*.
     illuminance_lux : (3,) lx per channel on a surface that faces the light.
     shadow : None for a lamp that casts none.
+    owner : name of the scene's lamp that this is a part of; "": none.
     """
 
     name: str
     direction: Float
     illuminance_lux: Float
     shadow: Shadow | None = field(default_factory=Shadow)
+    owner: str = field(default="", kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -125,11 +142,13 @@ class SkyLamp:
     name : unique in the scene.
     up : (3,) unit, the zenith.
     illuminance_lux : (3,) lx per channel on a surface that faces the zenith.
+    owner : name of the scene's lamp that this is a part of; "": none.
     """
 
     name: str
     up: Float
     illuminance_lux: Float
+    owner: str = field(default="", kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -143,9 +162,11 @@ class HemisphereLamp:
     up : (3,) unit, the zenith.
     sky_illuminance_lux : (3,) lx per channel from the sky on a surface that faces up.
     ground_illuminance_lux : (3,) lx per channel from the ground on a surface that faces down.
+    owner : name of the scene's lamp that this is a part of; "": none.
     """
 
     name: str
     up: Float
     sky_illuminance_lux: Float
     ground_illuminance_lux: Float
+    owner: str = field(default="", kw_only=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import lru_cache
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.photometry import Distribution, read_photometry
-from andon.lamps.areas import AreaLamp
+from andon.lamps.areas import SOFT_SHADOW
 from andon.lamps.bodies import Body
 from andon.lamps.colour import factors_from_rgb
 from andon.lamps.distributions import (
@@ -23,8 +24,9 @@ from andon.lamps.distributions import (
 )
 from andon.lamps.goniometry import flux_lm, maximum_cd, tilt_factor
 from andon.lamps.imported import imported_lamps
-from andon.lamps.kinds import Lamp
+from andon.lamps.kinds import AnyAreaLamp, Lamp
 from andon.lamps.model import (
+    LIGHT_FIELDS,
     DirectionalLamp,
     GoniometricLamp,
     HemisphereLamp,
@@ -53,6 +55,10 @@ __all__ = ["resolve_bodies", "resolve_lamps", "resolve_tables"]
 
 Float = NDArray[np.float64]
 
+# What can overflow: a huge flux in a narrow cone, or a colour far from white. Half of what float32
+# holds in decades is left for what distances make of it.
+MOST_LIGHT = 1e20
+
 
 def resolve_lamps(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
     """The lamps of a scene at one moment, in the order of the file; then those of glTF files.
@@ -64,10 +70,10 @@ def resolve_lamps(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
     return (*lamps, *imported_lamps(scene, [lamp.name for lamp in lamps]))
 
 
-def resolve_tables(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
-    """The lamps of the scene's own tables."""
+def resolve_tables(scene: Scene, time_seconds: float, where: str = "lamp") -> tuple[Lamp, ...]:
+    """The lamps of the scene's own tables; `where` these stand in the file, for messages."""
     resolved: list[Lamp] = []
-    for place, table, groups in _tables(scene, time_seconds):
+    for place, table, groups in _tables(scene, time_seconds, where):
         with np.errstate(over="ignore"):  # what overflows is refused below
             if table.kind in AREA_KINDS:
                 lamps: tuple[Lamp, ...] = (area_lamp(scene, place, table),)
@@ -76,14 +82,24 @@ def resolve_tables(scene: Scene, time_seconds: float) -> tuple[Lamp, ...]:
             if isinstance(lamps[0], PointLamp) and table.shell is not None:
                 lamps, _ = in_shell(scene, place, lamps[0], table.shell, groups)
         for lamp in lamps:
-            light = [getattr(lamp, key, None) for key in _LIGHT]
-            if not all(np.isfinite(values).all() for values in light if values is not None):
+            light = [getattr(lamp, key, None) for key in LIGHT_FIELDS]
+            if not all(
+                (np.abs(values) < MOST_LIGHT).all() for values in light if values is not None
+            ):
                 raise InputError("is too large to compute with", file=scene.file, field=place)
-        resolved += [
-            replace(lamp, body=table.name) if isinstance(lamp, AreaLamp) else lamp for lamp in lamps
-        ]
+        resolved += [_owned(lamp, table.name) for lamp in lamps]
     _check_names(scene, resolved)
     return tuple(resolved)
+
+
+def _owned(lamp: Lamp, name: str) -> Lamp:
+    """The lamp as part of the scene's lamp `name`."""
+    if not isinstance(lamp, AnyAreaLamp):
+        return replace(lamp, owner=name)
+    shadow = lamp.shadow and replace(lamp.shadow, near_m=SOFT_SHADOW.near_m)
+    # A bulb lights the shell that it stands in from inside; all else is that shell's own light.
+    body = "" if lamp.name == f"{name}: bulb" else name
+    return replace(lamp, owner=name, body=body, shadow=shadow)
 
 
 def resolve_bodies(scene: Scene, time_seconds: float) -> tuple[Body, ...]:
@@ -93,7 +109,7 @@ def resolve_bodies(scene: Scene, time_seconds: float) -> tuple[Body, ...]:
     `resolve_lamps` does.
     """
     bodies: list[Body] = []
-    for place, table, groups in _tables(scene, time_seconds):
+    for place, table, groups in _tables(scene, time_seconds, "lamp"):
         if table.kind in AREA_KINDS and table.drawn:
             lamp = area_lamp(scene, place, table)
             bodies.append(area_body(scene, place, table, lamp))
@@ -113,12 +129,14 @@ def _lamp(scene: Scene, place: str, table: Any) -> Lamp:
 GROUPS = ("real", "objects")
 
 
-def _tables(scene: Scene, time_seconds: float) -> Iterator[tuple[str, Any, frozenset[str]]]:
+def _tables(
+    scene: Scene, time_seconds: float, where: str
+) -> Iterator[tuple[str, Any, frozenset[str]]]:
     """Place, table and the caster groups of all bodies, for every lamp at one moment."""
     tables = scene.at(time_seconds).lamp
     groups = frozenset(table.name for table in tables)
     for index, table in enumerate(tables):
-        place = f"lamp[{index}]"
+        place = f"{where}[{index}]"
         _refuse_later(scene, place, table)
         has_body = table.kind in AREA_KINDS or getattr(table, "shell", None) is not None
         if has_body and table.name in GROUPS:
@@ -133,8 +151,8 @@ def _tables(scene: Scene, time_seconds: float) -> Iterator[tuple[str, Any, froze
 
 def _check_names(scene: Scene, lamps: list[Lamp]) -> None:
     """Lamps of a shell are named after it, which a file may have done before."""
-    names = [lamp.name for lamp in lamps]
-    twice = next((name for name in names if names.count(name) > 1), None)
+    counts = Counter(lamp.name for lamp in lamps)
+    twice = next((name for name, count in counts.items() if count > 1), None)
     if twice is not None:
         raise InputError(
             f"the name {twice!r} is taken by a part of another lamp's shell",
@@ -161,15 +179,6 @@ def _refuse_later(scene: Scene, place: str, table: AnyLamp) -> None:
             )
 
 
-# What can overflow: a huge flux in a narrow cone, or a colour far from white.
-_LIGHT = (
-    "intensity_cd",
-    "illuminance_lux",
-    "sky_illuminance_lux",
-    "ground_illuminance_lux",
-    "luminance_cd_m2",
-    "facet_luminance_cd_m2",
-)
 # Keys whose meaning would be lost if they were ignored.
 _LATER = {
     "flicker": "use [[lamp.key]]",

@@ -20,7 +20,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.errors import InputError
+from andon.lamps.areas import SphereLamp, TubeLamp
 from andon.lamps.kinds import Lamp
+from andon.lamps.model import LIGHT_FIELDS, PointLamp
 from andon.lamps.resolve import resolve_tables
 
 if TYPE_CHECKING:
@@ -33,14 +36,8 @@ NOW, BEFORE = ", now", ", before"
 
 Float = NDArray[np.float64]
 
-_LIGHT = (
-    "intensity_cd",
-    "illuminance_lux",
-    "sky_illuminance_lux",
-    "ground_illuminance_lux",
-    "luminance_cd_m2",
-    "facet_luminance_cd_m2",
-)
+# Of a real lamp's own body around its samples, and the least of it in metres: glass, housing.
+OWN_BODY, LEAST_EXTENT_M = 1.05, 0.02
 
 
 def resolve_sources(
@@ -54,17 +51,24 @@ def resolve_sources(
     ambient, groups = scene.ambient, frozenset(virtual)
     if ambient is None or not ambient.source:
         return ()
+    if ambient.dimming_mode == "paper":
+        raise InputError(
+            "sources are light, and 'paper' does not dim light but codes",
+            file=scene.file,
+            field="ambient.dimming_mode",
+            remedy="use 'linear', or state no sources",
+        )
     dimming = np.broadcast_to(np.asarray(ambient.dimming, float), 3)
     known = scene.model_copy(update={"lamp": ambient.source})
     lamps: list[Lamp] = []
-    for lamp in resolve_tables(known, time_seconds):
-        # Parts of a source in a shell are named after it.
-        is_removed = any(lamp.name.split(": ")[0] == name for name in ambient.removed)
+    for lamp in resolve_tables(known, time_seconds, "ambient.source"):
         shadow = getattr(lamp, "shadow", None)
-        if not is_removed:
+        if shadow is not None:
+            shadow = replace(shadow, near_m=_own_extent_m(lamp))
+        if lamp.owner not in ambient.removed:
             if shadow is None or not groups:
                 continue
-            lamps.append(scaled(lamp, dimming, name=lamp.name + NOW))
+            lamps.append(scaled(lamp, dimming, name=lamp.name + NOW, shadow=shadow))
         changes: dict[str, Any] = {"name": lamp.name + BEFORE}
         if shadow is not None:
             changes["shadow"] = replace(shadow, through=shadow.through | groups)
@@ -72,9 +76,19 @@ def resolve_sources(
     return tuple(lamps)
 
 
+def _own_extent_m(lamp: Lamp) -> float:
+    """How far from its samples the real lamp's own body may reach, which does not hide it."""
+    thick = 0.0
+    if isinstance(lamp, SphereLamp | TubeLamp):
+        thick = 2 * lamp.radius_m  # samples lie inside: the far side of the glass is that far
+    elif isinstance(lamp, PointLamp):
+        thick = lamp.visible_radius_m
+    return max(LEAST_EXTENT_M, OWN_BODY * thick)
+
+
 def scaled(lamp: Lamp, factor: Float, /, **changes: Any) -> Lamp:
     """`lamp` with `factor` (3,) times its light, not drawn, and with other `changes`."""
-    for key in _LIGHT:
+    for key in LIGHT_FIELDS:
         light = getattr(lamp, key, None)
         if light is not None:
             changes[key] = light * factor

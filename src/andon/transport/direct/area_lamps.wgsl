@@ -66,5 +66,7 @@ fn edges_illuminance(lamp: i32, first: i32, count: i32, position: vec3f, normal:
     );
     total += edge.left_light * share.x - edge.right_light * share.y;
   }
-  return max(total, vec3f(0.0));
+  // Light that is taken away is negative; rounding must not turn either round.
+  let side = sign(lamps[lamp].light);
+  return side * max(side * total, vec3f(0.0));
 }

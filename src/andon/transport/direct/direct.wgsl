@@ -11,6 +11,9 @@
 @group(1) @binding(2) var paraboloids: texture_2d_array<f32>;
 @group(1) @binding(3) var planes: texture_depth_2d_array;
 
+// Metres: what E = I/d² is cut at, so that a lamp on a surface gives no infinity.
+const NEAREST_M: f32 = 1e-3;
+
 // Two surfaces closer than this share of their distance are one: float32 rounding of a depth map.
 const SAME_DEPTH: f32 = 2e-5;
 
@@ -41,10 +44,10 @@ fn paraboloid_texel_lit(point: Receiver, texel: vec2i) -> bool {
 
 fn point_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
   let reach = position - lamps[lamp].position;
-  let inverse = inverseSqrt(dot(reach, reach));
-  let distance = dot(reach, reach) * inverse;
+  let distance = length(reach);
+  let inverse = 1.0 / max(distance, NEAREST_M);
   let away = dot(normal, reach);
-  let place = reach.xy * (0.5 * MAP_SIZE / (distance + abs(reach.z))) + 0.5 * MAP_SIZE;
+  let place = reach.xy * (0.5 * MAP_SIZE / max(distance + abs(reach.z), 1e-9)) + 0.5 * MAP_SIZE;
   let seen = paraboloid_share(Receiver(lamp, layer, reach, normal, away + bias), place);
   let lit = select(seen, 1.0, layer < 0);
   return lamps[lamp].light * (max(-away, 0.0) * inverse * inverse * inverse * lit);
@@ -73,7 +76,7 @@ fn spot_texel_lit(point: Receiver, texel: vec2i) -> bool {
 fn spot_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
   let record = lamps[lamp];
   let reach = position - record.position;
-  let inverse = inverseSqrt(dot(reach, reach));
+  let inverse = inverseSqrt(max(dot(reach, reach), NEAREST_M * NEAREST_M));
   let away = dot(normal, reach);
   let along = dot(record.axis, reach);
   let tangent = vec2f(dot(record.right, reach), dot(record.down, reach)) / along;

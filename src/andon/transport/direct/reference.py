@@ -40,6 +40,9 @@ __all__ = ["illuminance", "illuminate", "visibility", "visible_share"]
 
 Float = NDArray[np.float64]
 
+# Metres: what E = I/d² is cut at, so that a lamp on a surface gives no infinity.
+NEAREST_M = 1e-3
+
 
 def illuminance(lamp: Lamp | AreaLamp, position: Float, normal: Float, /) -> Float:
     """Unshadowed illuminance (..., 3) in lux at `position` (..., 3) with unit `normal` (..., 3).
@@ -65,7 +68,8 @@ def illuminance(lamp: Lamp | AreaLamp, position: Float, normal: Float, /) -> Flo
 
 def _from_a_place(lamp: PointLamp, position: Float, normal: Float) -> Float:
     reach = lamp.position_m - position
-    square = np.einsum("...i,...i->...", reach, reach)
+    # No surface is nearer to a lamp than this; a lamp exactly on one gives it nothing.
+    square = np.maximum(np.einsum("...i,...i->...", reach, reach), NEAREST_M**2)
     cosine_over_square = np.einsum("...i,...i->...", reach, normal) / square**1.5
     factor = np.maximum(cosine_over_square, 0)
     return factor[..., None] * intensity_cd(lamp, -reach / np.sqrt(square)[..., None])
@@ -123,7 +127,7 @@ def visibility(lamp: Lamp, points: Float, rays: ShadowRays, /) -> NDArray[np.boo
     if isinstance(lamp, DirectionalLamp):
         return casters.sees_infinity(points, -lamp.direction)
     assert isinstance(lamp, PointLamp)
-    return casters.is_visible(points, lamp.position_m)
+    return casters.is_visible(points, lamp.position_m, near_m=lamp.shadow.near_m)
 
 
 def visible_share(
@@ -138,8 +142,13 @@ def visible_share(
     casters = rays.through(lamp.shadow.through)
     samples = sample_points(lamp, lamp.shadow.samples)
     weights = sample_weights(samples, position, normal)
-    seen = np.stack([casters.is_visible(lifted, point) for point in samples.points])
-    return np.einsum("nm,nmc->mc", seen, weights) / weights.sum(axis=0)
+    near_m = lamp.shadow.near_m
+    seen = np.stack([casters.is_visible(lifted, point, near_m=near_m) for point in samples.points])
+    whole = weights.sum(axis=0)
+    arrives = np.einsum("nm,nmc->mc", seen, weights)
+    # A channel that no sample has: whatever is seen of the others.
+    plain = np.broadcast_to(seen.mean(axis=0)[:, None], whole.shape)
+    return np.divide(arrives, whole, out=plain.astype(np.float64), where=whole > 0)
 
 
 def illuminate(

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps.areas import AreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
+from andon.quantities import photometric
 from andon.spaces import perpendicular
 
 __all__ = [
@@ -56,7 +57,7 @@ class Samples:
     ----------
     points : (n, 3) metres, world.
     normals : (n, 3) unit, of the emitting side; zero where there is none.
-    light : (n, 3) luminance × area of each sample, in any unit common to all.
+    light : (n, 3) luminance × area of each sample, in any unit common to all, ≥ 0.
     sides : `NO_FACE`, `ONE_SIDE` or `TWO_SIDES`.
     """
 
@@ -84,7 +85,13 @@ def probes(count: int, /) -> int:
 
 
 def _farthest_first(points: Float) -> NDArray[np.intp]:
-    """(n,) an order in which each point is the farthest from those before it."""
+    """(n,) an order in which each point is the farthest from those before it.
+
+    Rounded from the middle, so that a lamp that moves keeps its order.
+    """
+    points = points - points.mean(axis=0)
+    step = 1e-6 * max(float(np.abs(points).max()), 1e-300)
+    points = np.rint(points / step)
     order = [int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))]
     distance = np.linalg.norm(points - points[order[0]], axis=1)
     while len(order) < len(points):
@@ -224,14 +231,15 @@ def _on_a_polygon(lamp: PolygonLamp, count: int) -> Samples:
     flat = np.stack([(vertices - vertices[0]) @ right, (vertices - vertices[0]) @ up], axis=1)
     low, high = flat.min(axis=0), flat.max(axis=0)
     width, height = (high - low).tolist()
-    if np.isclose(area, width * height):
+    light = np.ones((count, 3))
+    if lamp.texture is not None:
+        place, light = _on_a_picture(lamp.texture, count)
+        inside = low + place * (high - low)
+    elif np.isclose(area, width * height):
         inside = low + _lattice(count, 2) * (high - low)
     else:
         inside = _in_a_polygon(flat, area, count)
     points = vertices[0] + inside[:, :1] * right + inside[:, 1:] * up
-    light = np.ones((len(points), 3))
-    if lamp.texture is not None:
-        light = _texture_at(lamp.texture, (inside - low) / (high - low))
     return _flat(points, normal, light, lamp.two_sided)
 
 
@@ -254,20 +262,46 @@ def _is_inside(points: Float, flat: Float) -> NDArray[np.bool_]:
     return np.count_nonzero(between & (points[:, None, 0] < at), axis=1) % 2 == 1
 
 
-def _texture_at(texture: Float, place: Float) -> Float:
-    """Texels (n, 3) at (across, up) in [0, 1]; row 0 is the top."""
-    rows, columns = texture.shape[:2]
-    column = np.clip((place[:, 0] * columns).astype(int), 0, columns - 1)
-    row = np.clip(((1 - place[:, 1]) * rows).astype(int), 0, rows - 1)
-    return np.asarray(texture[row, column], np.float64)
+def _on_a_picture(texture: Float, count: int) -> tuple[Float, Float]:
+    """Places (count, 2) across and up in [0, 1], as dense as the picture is bright, and the light
+    (count, 3) of each, of photometric value 1; row 0 is the top."""
+    bright = np.maximum(photometric(np.asarray(texture, np.float64)), 0)[::-1]
+    light = np.maximum(np.asarray(texture, np.float64), 0)[::-1]
+    if not bright.any():
+        bright, light = np.ones_like(bright), np.ones_like(light)
+    u, v = _lattice(count, 2).T
+    row, up = _inverse(bright.sum(axis=1)[None], v[:, None])
+    column, across = _inverse(bright[row[:, 0]], u[:, None])
+    place = np.stack([across[:, 0], up[:, 0]], axis=1)
+    row, column = row[:, 0], column[:, 0]
+    return place, light[row, column] / bright[row, column, None]
+
+
+def _inverse(density: Float, share: Float) -> tuple[NDArray[np.intp], Float]:
+    """Cell and place in [0, 1] below which `share` (n, 1) of `density` (1 or n, cells) lies."""
+    bounds = np.cumsum(density, axis=1) / density.sum(axis=1, keepdims=True)
+    cell = (bounds < share).sum(axis=1, keepdims=True).clip(max=density.shape[1] - 1)
+    bounds = np.broadcast_to(bounds, (len(share), density.shape[1]))
+    high = np.take_along_axis(bounds, cell, axis=1)
+    low = np.where(cell > 0, np.take_along_axis(bounds, np.maximum(cell - 1, 0), axis=1), 0.0)
+    within = (share - low) / np.maximum(high - low, 1e-300)
+    return cell, (cell + within.clip(0, 1)) / density.shape[1]
 
 
 def _on_a_mesh(lamp: MeshLamp, count: int) -> Samples:
-    """Evenly by area, each with its facet's luminance."""
+    """As densely as the facets are bright, so that none is wasted on dark ones."""
     a, b, c = np.moveaxis(lamp.positions_m[lamp.triangles], 1, 0)
     cross = np.cross(b - a, c - a)
     area = np.linalg.norm(cross, axis=1) / 2
-    bounds = np.cumsum(area) / area.sum()
+    # Light taken away is sampled as light that is given.
+    light = np.ones((len(area), 3))
+    if lamp.facet_luminance_cd_m2 is not None:
+        light = np.abs(lamp.facet_luminance_cd_m2)
+    bright = photometric(light)
+    if not bright.any():
+        light, bright = np.ones_like(light), np.ones_like(bright)
+    bounds = np.cumsum(area * bright)
+    bounds /= bounds[-1]
     facet = np.searchsorted(bounds, (np.arange(count) + 0.5) / count).clip(max=len(area) - 1)
     u, v = _lattice(count, 2).T
     folded = u + v > 1
@@ -275,7 +309,4 @@ def _on_a_mesh(lamp: MeshLamp, count: int) -> Samples:
     v = np.asarray(np.where(folded, 1 - v, v), np.float64)
     points = a[facet] + u[:, None] * (b - a)[facet] + v[:, None] * (c - a)[facet]
     normals = cross[facet] / (2 * area[facet, None])
-    light = np.ones((count, 3))
-    if lamp.facet_luminance_cd_m2 is not None:
-        light = lamp.facet_luminance_cd_m2[facet]
-    return Samples(points, normals, light, ONE_SIDE)
+    return Samples(points, normals, light[facet] / bright[facet, None], ONE_SIDE)

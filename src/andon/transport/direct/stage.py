@@ -24,10 +24,11 @@ from andon.transport.direct.shadows.maps import NEAR_M, ShadowMaps
 from andon.transport.direct.shadows.soft_maps import SoftMaps
 from andon.transport.direct.sum import sum_of_lamps
 
-__all__ = ["FILTER", "STRUCTS", "SUM", "DirectStage"]
+__all__ = ["FILTER", "SOFT_FILTER", "STRUCTS", "SUM", "DirectStage"]
 
 
 FILTER = "andon/transport/direct/shadows/filter_{}.wgsl"
+SOFT_FILTER = "andon/transport/direct/shadows/soft_{}.wgsl"
 SUM = "andon/transport/direct/sum.wgsl"
 
 
@@ -57,7 +58,7 @@ class DirectStage:
         self.bias = {"bias_real_m": bias_real_m, "bias_object_m": bias_object_m}
         self.casters = CasterBuffers(gpu, casters)
         self.maps = ShadowMaps(gpu, self.casters, lamps)
-        self.soft = SoftMaps(gpu, self.casters, lamps, NEAR_M)
+        self.soft = SoftMaps(gpu, self.casters, lamps)
         self.areas = AreaBuffers(gpu, lamps)
         luminaires = LuminaireTables(gpu, lamps)
         code = sum_of_lamps(
@@ -71,7 +72,11 @@ class DirectStage:
             soft_map_size=self.soft.size,
             triangles=len(self.casters.triangles),
         )
-        self.variants = {SUM: code, FILTER.format("none"): FILTER.format(self.maps.filter)}
+        self.variants = {
+            SUM: code,
+            FILTER.format("none"): FILTER.format(self.maps.filter),
+            SOFT_FILTER.format("linear"): SOFT_FILTER.format(self.soft.filter),
+        }
         self._lamps = uniform_buffer(gpu, LAMP_RECORD.dtype.itemsize * MAX_LAMPS, "lamps")
         self._settings = uniform_buffer(gpu, DIRECT_RECORD.dtype.itemsize, "direct")
         self.group = bind_group(

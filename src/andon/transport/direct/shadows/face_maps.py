@@ -49,7 +49,6 @@ class FaceMaps:
     ----------
     occluders : (lamps · m · 4,) vec4f storage buffer, see filter_exact.wgsl; one row without
         `exact`.
-    near_m : nothing nearer to the lamp casts a shadow.
     """
 
     def __init__(
@@ -58,12 +57,11 @@ class FaceMaps:
         casters: CasterBuffers,
         discs: Sequence[Any],
         map_size: int,
-        near_m: float,
         *,
         exact: bool = False,
         slots: int | None = None,
     ) -> None:
-        self.gpu, self.discs, self.near_m, self.exact = gpu, discs, near_m, exact
+        self.gpu, self.discs, self.exact = gpu, discs, exact
         self.casters = casters
         self.face = map_size // 2
         size = (3 * self.face, 2 * self.face)
@@ -133,18 +131,20 @@ class FaceMaps:
         encoder: Any,
         position: NDArray[np.float64],
         layer: int,
-        hiding: NDArray[np.bool_] | None = None,
+        hiding: NDArray[np.bool_] | None,
+        near_m: float,
     ) -> None:
         """Records the map of a lamp at `position` (3,) into the discs `layer` and `layer` + 1.
 
-        `hiding` (m,) says which triangles hide this lamp; None: all.
+        `hiding` (m,) says which triangles hide this lamp; None: all. Nothing nearer than `near_m`
+        does.
         """
         slot = self._slots[layer // 2 % len(self._slots)]
         casters = self.casters
         faces = face_triangles(casters.positions, casters.triangles, position.astype(np.float32))
         if hiding is not None:
             faces = [face[hiding[face]] for face in faces]
-        self._upload(slot, position, np.concatenate(faces))
+        self._upload(slot, position, np.concatenate(faces), near_m)
         render = encoder.begin_render_pass(
             label="shadow faces",
             color_attachments=[color_attachment(self.seen.view)],
@@ -168,8 +168,14 @@ class FaceMaps:
         render.end()
         self._resampling.encode(encoder, self.discs[layer : layer + 2], [slot.resampling])
 
-    def _upload(self, slot: _Slot, position: NDArray[np.float64], seen: NDArray[np.int32]) -> None:
-        record = FACE_RECORD.pack(position=position, near_m=self.near_m)
+    def _upload(
+        self,
+        slot: _Slot,
+        position: NDArray[np.float64],
+        seen: NDArray[np.int32],
+        near_m: float,
+    ) -> None:
+        record = FACE_RECORD.pack(position=position, near_m=near_m)
         write_buffer(self.gpu, slot.lamp, record)
         if len(seen):
             write_buffer(self.gpu, slot.corners, self.casters.triangles[seen])

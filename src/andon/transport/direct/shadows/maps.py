@@ -23,7 +23,7 @@ __all__ = ["NEAR_M", "ShadowMaps"]
 # From the coarsest to the finest.
 FILTERS = ("none", "linear", "exact")
 FOLDER = "andon/transport/direct/shadows"
-# Nothing nearer than this to a lamp casts a shadow (the bulb itself, its socket): metres.
+# The near plane of planar maps, metres.
 NEAR_M = 0.01
 
 
@@ -79,7 +79,7 @@ class ShadowMaps:
             layers = range(self.paraboloids.layers or 0)
             views = [self.paraboloids.layer_view(layer) for layer in layers]
             exact = self.filter == "exact"
-            self._faces = FaceMaps(gpu, buffers, views, self.size, NEAR_M, exact=exact)
+            self._faces = FaceMaps(gpu, buffers, views, self.size, exact=exact)
         self.occluders = self._faces.occluders if self._faces else buffers.vertices
         self._planar = _Planar(self, len(flat_lamps)) if flat_lamps else None
 
@@ -108,7 +108,8 @@ class ShadowMaps:
             assert self._faces is not None
             assert isinstance(lamp, PointLamp)
             hiding = self.buffers.casters.hiding(_through(lamp))
-            self._faces.encode(encoder, lamp.position_m, layer, hiding)
+            near_m = NEAR_M if lamp.shadow is None else lamp.shadow.near_m
+            self._faces.encode(encoder, lamp.position_m, layer, hiding, near_m)
         else:
             assert self._planar is not None
             hiding = self.buffers.casters.hiding(_through(lamp))

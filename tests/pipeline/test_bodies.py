@@ -1,5 +1,7 @@
 """Luminous bodies in the frame: seen, hidden and hiding, on both engines."""
 
+import json
+import struct
 from dataclasses import replace
 
 import numpy as np
@@ -7,11 +9,12 @@ import pytest
 
 import andon
 from andon.engines.prepared import prepare
+from andon.errors import InputError
 from andon.lamps import Shadow
 from andon.pipeline import Renderer
 from andon.scene import scene_from_dict
 from comparison import assert_agree, assert_same_picture
-from worlds import block, write_glb, write_obj, write_relight_files, write_scene_files
+from worlds import ball, block, write_glb, write_obj, write_relight_files, write_scene_files
 
 # A wall 2 m before the camera, which looks along −Z.
 BALL = {
@@ -200,7 +203,100 @@ def test_a_source_that_is_removed_takes_its_light_with_it(engine, tmp_path):
     assert_agree(taken, -0.5 * given, rtol=1e-5, atol=1e-5)
 
 
-def test_engines_agree_on_darkening(gpu, tmp_path):
-    room = with_source(tmp_path, object=[BOX], lamp=[BALL])
+PANEL_SOURCE = {
+    "kind": "rectangle", "name": "ceiling", "position": [0, 0.9, -1.2], "direction": [0, -1, 0],
+    "up": [0, 0, 1], "width_m": 0.4, "height_m": 0.3, "luminance_cd_m2": 400.0,
+}  # fmt: skip
+SPOT = {"kind": "spot", "direction": [0, -1, -0.2], "outer_degrees": 40.0}
+SOURCES = {
+    "point": SOURCE,
+    "rectangle": PANEL_SOURCE,
+    "picture": PANEL_SOURCE | {"texture": "picture.png"},
+    "mesh": {"kind": "mesh", "name": "ceiling", "mesh": "lantern.obj", "position": [0, 0.8, -1.2],
+             "luminance_cd_m2": 300.0},
+    "spot in a ball": SOURCE | SPOT | {"shell": {"radius_m": 0.1, "transmittance": 0.6}},
+    "open shell": SOURCE | {"shell": {"mesh": "shade.obj", "transmittance": 0.5}},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("removed", [(), ("ceiling",)], ids=["kept", "removed"])
+@pytest.mark.parametrize("kind", SOURCES)
+def test_engines_agree_on_darkening(gpu, tmp_path, kind, removed):
+    from andon.files.pictures import write_png
+
+    codes = np.random.default_rng(1).integers(0, 256, (6, 8, 3), dtype=np.uint8)
+    write_png(tmp_path / "picture.png", codes)
+    write_obj(tmp_path / "lantern.obj", block((0.2, 0.2, 0.2), (0, 0, 0)))
+    shade = block((0.2, 0.2, 0.2), (0, 0, 0))
+    sides = np.abs(shade.positions[shade.triangles].mean(axis=1)[:, 1]) < 0.05
+    write_obj(tmp_path / "shade.obj", replace(shade, triangles=shade.triangles[sides]))
+    ambient = {"source": [SOURCES[kind]], "removed": list(removed)}
+    room = with_source(tmp_path, object=[BOX], lamp=[BALL], ambient=ambient)
     expected, actual = (Renderer(room, name).render() for name in ("reference", "gpu"))
     assert_same_picture(actual.image.rgb, expected.image.rgb, tmp_path, share=0.03, mean=1.0)
+    truth, ours = (np.asarray(f.illuminance.lux, float) for f in (expected, actual))
+    error = np.abs(ours - truth)
+    assert np.percentile(error, 95) < 0.02 * np.abs(truth).max()
+    assert np.isfinite(truth).all()
+    assert (truth.min() < -0.1 * truth.max()) == bool(removed) or kind != "point"
+
+
+def test_a_lamp_that_is_part_of_the_room_is_removed_though_its_own_glass_is_in_the_way(
+    engine, tmp_path
+):
+    bulb = {"kind": "sphere", "name": "ceiling", "position": [0.0, 0.4, -1.4], "radius_m": 0.08,
+            "luminance_cd_m2": 900.0}  # fmt: skip
+    from andon.files.meshes import read_mesh
+
+    walls = block((3.0, 2.4, 3.4), (0, 0, 0), inwards=True)
+    write_obj(tmp_path / "bare.obj", walls)
+    glass = ball(0.08, bulb["position"])
+    whole = replace(
+        walls,
+        positions=np.concatenate([walls.positions, glass.positions]),
+        triangles=np.concatenate([walls.triangles, glass.triangles + len(walls.positions)]),
+    )
+    write_obj(tmp_path / "glazed.obj", whole)
+    assert len(read_mesh(tmp_path / "glazed.obj").geometry.triangles) > len(walls.triangles)
+    taken = []
+    for mesh in ("bare.obj", "glazed.obj"):
+        ambient = {"illuminance_lux": 120.0, "source": [bulb], "removed": ["ceiling"]}
+        room = scene(tmp_path, ambient=ambient, surface={"mesh": mesh})
+        frame = Renderer(room, engine).render()
+        taken.append(np.asarray(frame.illuminance.lux, float))
+    wall = frame.surface.valid & (np.abs(taken[0] - taken[1]).max(axis=-1) >= 0)
+    wall &= np.linalg.norm(frame.surface.position - bulb["position"], axis=-1) > 0.3
+    np.testing.assert_allclose(taken[1][wall].mean(), taken[0][wall].mean(), rtol=0.03)
+    assert taken[0][wall].mean() < -3
+
+
+def test_paper_dimming_of_sources_is_refused(tmp_path):
+    ambient = {"removed": ["ceiling"], "dimming": 0.3, "dimming_mode": "paper"}
+    with pytest.raises(InputError, match="dimming_mode"):
+        Renderer(with_source(tmp_path, ambient=ambient), "reference")
+
+
+def with_a_light(path):
+    """Adds a point light of 50 cd to a .glb file."""
+    data = path.read_bytes()
+    length = struct.unpack_from("<I", data, 12)[0]
+    document = json.loads(data[20 : 20 + length])
+    document["extensionsUsed"] = ["KHR_lights_punctual"]
+    lights = [{"type": "point", "intensity": 50}]
+    document["extensions"] = {"KHR_lights_punctual": {"lights": lights}}
+    node = {"name": "bulb", "translation": [0, 0.3, 0.5]}
+    document["nodes"].append(node | {"extensions": {"KHR_lights_punctual": {"light": 0}}})
+    document["scenes"][0]["nodes"].append(len(document["nodes"]) - 1)
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    rest = data[20 + length :]
+    header = struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A)
+    path.write_bytes(header + text + rest)
+
+
+def test_lights_of_a_gltf_file_reach_the_frame(engine, tmp_path):
+    write_glb(tmp_path / "box.glb", block((0.3, 0.3, 0.3), (0, 0, 0)))
+    with_a_light(tmp_path / "box.glb")
+    room = scene(tmp_path, object=[BOX | {"lamps": True}], lamp=[])
+    frame = Renderer(room, engine).render()
+    assert np.asarray(frame.illuminance.lux).max() > 1

@@ -9,7 +9,6 @@ import numpy as np
 
 from andon.engines.prepared import Prepared
 from andon.lamps import Lamp, SpotLamp
-from andon.lamps.sources import BEFORE, NOW
 from andon.pipeline import Frame
 from andon.quantities import Surface
 from andon.rays import RayScene
@@ -107,7 +106,7 @@ def _where(points: Any, surface: Surface) -> str:
 def _on_lamps(surface: Surface, prepared: Prepared, time_seconds: float) -> list[str]:
     """Lamps that add nothing to any pixel; those of E0 only change what is there."""
     every, bodies = prepared.lamps(time_seconds), prepared.bodies(time_seconds)
-    lamps = [lamp for lamp in every if not lamp.name.endswith((NOW, BEFORE))]
+    lamps = [lamp for lamp in every if lamp.owner not in prepared.sources]
     if not lamps or not surface.valid.any():
         return []
     from andon.engines.reference import ReferenceEngine
@@ -122,7 +121,7 @@ def _on_lamps(surface: Surface, prepared: Prepared, time_seconds: float) -> list
 
     parts: dict[str, list[Lamp]] = {}
     for lamp in lamps:  # what a shell makes of a lamp is named after it
-        parts.setdefault(lamp.name.split(": ")[0], []).append(lamp)
+        parts.setdefault(lamp.owner or lamp.name, []).append(lamp)
     return [
         f"the lamp {name!r} adds no light: {_why_dark(lamps[0], lights)}"
         for name, lamps in parts.items()

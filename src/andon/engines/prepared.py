@@ -63,6 +63,7 @@ class Prepared:
     glow : of luminous bodies, or None.
     photometry : the word that every number carries.
     ignored : tables of the scene that this version does not draw.
+    sources : names of the known lamps of E0, which `lamps` has with positive and negative light.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -74,6 +75,7 @@ class Prepared:
     glow: Glow | None = None
     photometry: Photometry = "absolute"
     ignored: tuple[str, ...] = ()
+    sources: tuple[str, ...] = ()
 
     def casters(self, bodies: Sequence[Body]) -> Casters:
         """What casts shadows while the luminous bodies are where they are."""
@@ -100,8 +102,9 @@ def prepare(scene: Scene, /) -> Prepared:
         for name, picture in pictures.items()
     }
     eye = next(iter(frames.values())).view.position
-    _check_lamps(scene, resolve_lamps(scene, 0.0), surface, eye)
     virtual = _virtual_groups(scene)
+    lamps = (*resolve_lamps(scene, 0.0), *resolve_sources(scene, 0.0, virtual))
+    _check_lamps(scene, lamps, surface, eye)
     return Prepared(
         frames=frames,
         surface=surface,
@@ -115,6 +118,7 @@ def prepare(scene: Scene, /) -> Prepared:
         glow=_glow(scene),
         photometry=scene.photometry,
         ignored=_ignored(scene),
+        sources=tuple(table.name for table in scene.ambient.source) if scene.ambient else (),
     )
 
 
@@ -324,13 +328,11 @@ def _check_lamps(
     for lamp in lamps:
         if not isinstance(lamp, PointLamp | AreaLamp):
             continue
-        # Parts of a lamp in a shell are named after it.
-        index = next(i for i, table in enumerate(scene.lamp) if _is_of(lamp, table.name))
         if surface.is_distant_only:
             raise InputError(
                 f"the lamp {lamp.name!r} has a place, but a normals-only surface has none",
                 file=scene.file,
-                field=f"lamp[{index}].kind",
+                field=f"{_place(scene, lamp)}.kind",
                 remedy="use directional, sky or hemisphere, or give a depth or a mesh",
             )
         # Areas may be let into a wall; points may not.
@@ -343,10 +345,16 @@ def _check_lamps(
             raise InputError(
                 f"the lamp {lamp.name!r} at ({x:g}, {y:g}, {z:g}) is inside a wall",
                 file=scene.file,
-                field=f"lamp[{index}].position",
+                field=f"{_place(scene, lamp)}.position",
                 remedy="move it into the space that the camera sees",
             )
 
 
-def _is_of(lamp: Lamp, name: str) -> bool:
-    return lamp.name == name or lamp.name.startswith(f"{name}: ")
+def _place(scene: Scene, lamp: Lamp) -> str:
+    """Where the scene file states the lamp that `lamp` is, or is a part of."""
+    sources = scene.ambient.source if scene.ambient else ()
+    for where, tables in (("lamp", scene.lamp), ("ambient.source", sources)):
+        for index, table in enumerate(tables):
+            if table.name == lamp.owner:
+                return f"{where}[{index}]"
+    return "surface.lamps"  # imported from a mesh, the surface's or an object's

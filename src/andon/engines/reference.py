@@ -31,7 +31,6 @@ class ReferenceEngine:
         self.prepared = prepared
         self._surfaces: dict[str, Surface] = {}
         self._rays = ShadowRays(prepared.casters(()))
-        self._bodies: tuple[Body, ...] = ()
         self.maps_redrawn = 0
 
     def see(self, view_name: str, bodies: Sequence[Body]) -> Surface:
@@ -45,9 +44,9 @@ class ReferenceEngine:
         self, seen: Surface, lamps: Sequence[Lamp], bodies: Sequence[Body]
     ) -> Illuminance:
         """Direct light of all lamps on the surface."""
-        if tuple(bodies) != self._bodies:  # dataclasses of arrays: the same objects, or others
-            self._rays = ShadowRays(self.prepared.casters(bodies))
-            self._bodies = tuple(bodies)
+        casters = self.prepared.casters(bodies)
+        if casters.version(()) != self._rays.casters.version(()):
+            self._rays = ShadowRays(casters)
         bias = self.prepared.surface.bias
         bias_m: NDArray[np.float64] = np.where(seen.is_object, bias.object_m, bias.real_m)
         names = [body.name for body in bodies]

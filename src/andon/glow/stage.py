@@ -15,9 +15,10 @@ from andon.spaces import View
 
 __all__ = ["BODY_LIMIT", "GlowStage"]
 
-# Luminance of a body, in units of the picture, above which it is cut: half of what a half float
-# holds, so that a picture below it stays finite with a glow of such bodies on top.
-BODY_LIMIT = 32752.0
+# Luminance of a body, in units of the picture, above which it is cut: what a half float holds. A
+# unit is the picture's white, so in a room of 1 lx that is 20,000 cd/m², a frosted bulb. Where the
+# sum is more than that the picture is infinite, which the display shows as white.
+BODY_LIMIT = 65504.0
 
 FORMAT = "rgba16float"
 # Between passes: half floats are cut, not rounded, by some drivers, which costs 0.04 % of the light

@@ -86,10 +86,10 @@ def lamp_of_light(
     if not (np.isfinite(triple).all() and np.isfinite(position).all()):
         raise InputError("is too large to compute with", file=file, field=f"light {name!r}")
     if light.kind == "point":
-        return PointLamp(name, position, triple)
+        return PointLamp(name, position, triple, owner=name)
     direction = _unit(rotate(world_from_light, np.array([0.0, 0.0, -1.0])), name, file)
     if light.kind == "directional":
-        return DirectionalLamp(name, direction, triple)
+        return DirectionalLamp(name, direction, triple, owner=name)
     try:
         spot_coefficients(light.inner_radians, light.outer_radians)
     except InputError as error:
@@ -102,6 +102,7 @@ def lamp_of_light(
         direction=direction,
         inner_radians=cone[0],
         outer_radians=cone[1],
+        owner=name,
     )
 
 

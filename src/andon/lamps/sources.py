@@ -29,7 +29,7 @@ from andon.lamps.resolve import resolve_tables
 if TYPE_CHECKING:
     from andon.scene import Scene
 
-__all__ = ["BEFORE", "NOW", "resolve_sources", "scaled"]
+__all__ = ["resolve_sources", "scaled"]
 
 # Ends of the names of a source's two lamps.
 NOW, BEFORE = ", now", ", before"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +37,7 @@ def room_area_lamps(samples: int = 64) -> tuple[AnyAreaLamp, ...]:
     shadow = Shadow(map_size=512, samples=samples)
     places = [(lamp.position, lamp.intensity_rgb_cd) for lamp in lamps_in(room(), 5)]
     frames = [_frame(TARGET_M - position) for position, _ in places]
-    keys = {"shadow": shadow, "drawn": False}
+    keys: dict[str, Any] = {"shadow": shadow, "drawn": False}
     (a, b, c, d, e), (_, fb, fc, fd, fe) = [position for position, _ in places], frames
     light = [intensity / 0.03 for _, intensity in places]  # cd/m² of a lamp of 0.03 m²
     corners = np.array([(-0.1, -0.08), (0.1, -0.08), (0.1, 0.08), (-0.1, 0.08)])

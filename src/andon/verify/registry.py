@@ -47,6 +47,13 @@ class Row:
 
 def rows() -> tuple[Row, ...]:
     """All rows, stage by stage."""
-    from andon.verify.rows import area_scene, areas, photometry, relight
+    from andon.verify.rows import area_scene, areas, penumbra, photometry, relight, synthetic
 
-    return (*relight.ROWS, *areas.ROWS, *area_scene.ROWS, *photometry.ROWS)
+    return (
+        *relight.ROWS,
+        *areas.ROWS,
+        *area_scene.ROWS,
+        *penumbra.ROWS,
+        *synthetic.ROWS,
+        *photometry.ROWS,
+    )

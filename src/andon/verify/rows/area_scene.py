@@ -89,12 +89,12 @@ def _edges() -> Mask:
 
 
 @cache
-def area_scene(engine: EngineName) -> tuple[float, float, float]:
+def area_scene(engine: EngineName, samples: int = 64) -> tuple[float, float, float]:
     """Median and 95th percentile of the relative error outside penumbrae; the share left out."""
     chosen = _chosen()
     kept = ~_edges()[chosen]
     truth = _truth(CUTS).sum(axis=0)[kept]
-    frame = _frame(engine, _all_lamps(), 64)
+    frame = _frame(engine, _all_lamps(), samples)
     error = _relative(np.asarray(frame.illuminance.lux, float)[chosen][kept], truth)
     return float(np.median(error)), float(np.percentile(error, 95)), 1 - float(kept.mean())
 

@@ -53,7 +53,8 @@ def area_lamp(kind: str, centre: Float, /, *, facing: Float) -> AnyAreaLamp:
         case "polygon":
             angles = np.radians([0, 50, 140, 215, 290])[:, None]
             reach = np.array([0.1, 0.12, 0.08, 0.12, 0.1])[:, None]
-            corners: Float = centre + reach * (np.cos(angles) * side + np.sin(angles) * up)
+            around = np.cos(angles) * side + np.sin(angles) * up
+            corners = np.asarray(centre + reach * around, np.float64)
             lamp = PolygonLamp(name, WHITE, corners)
         case "tube":
             along = 0.8 * right + 0.6 * facing
@@ -114,11 +115,12 @@ def _grazing(towards: Float, normal: Float) -> Float:
     """(..., 3) the normals, turned until `towards` (..., 3) lies at cos φ = `GRAZING`."""
     cosine = np.einsum("...i,...i->...", towards, normal)[..., None]
     aside = normal - cosine * towards
-    length = np.linalg.norm(aside, axis=-1, keepdims=True)
+    length: Float = np.linalg.norm(aside, axis=-1, keepdims=True)
     # Overhead any side will do.
     level = np.cross(towards, np.roll(towards, 1, axis=-1) + np.array([1.0, 0.3, 0.0]))
     level = level / np.linalg.norm(level, axis=-1, keepdims=True)
-    side: Float = np.where(length > 1e-6, aside / np.maximum(length, 1e-6), level)
+    is_overhead = length < 1e-6
+    side: Float = (aside + is_overhead * (level - aside)) / np.where(is_overhead, 1.0, length)
     return GRAZING * towards + np.sqrt(1 - GRAZING**2) * side
 
 

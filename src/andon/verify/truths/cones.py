@@ -262,12 +262,12 @@ def _inner(end: Float, side: Float, planes: list[Float]) -> Float:
     """
     start, stop = np.zeros_like(end), end.copy()
     for plane in planes:
-        level, slope = plane[:, 2], np.einsum("ki,ki->k", side, plane[:, :2])
-        zero = np.arctan2(np.abs(level), np.where(level > 0, -slope, slope))
+        level, slope = plane[:, 2], _dot(side, plane[:, :2])
+        zero = np.arctan2(np.abs(level), slope * np.where(level > 0, -1.0, 1.0))
         stop = np.where(level > 0, np.minimum(stop, zero), stop)
         start = np.where(level > 0, start, np.maximum(start, zero))
     stop = np.maximum(stop, start)
-    level, slope = planes[0][:, 2], np.einsum("ki,ki->k", side, planes[0][:, :2])
+    level, slope = planes[0][:, 2], _dot(side, planes[0][:, :2])
 
     def primitive(a: Float) -> Float:
         return level * np.sin(a) ** 2 / 2 + slope * (a / 2 - np.sin(2 * a) / 4)

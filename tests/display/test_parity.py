@@ -32,7 +32,7 @@ def shown_by_gpu(gpu, linear, response, exposure, per_unit):
     return stage.read().rgb
 
 
-@pytest.mark.parametrize("tone", ["none", "reinhard"])
+@pytest.mark.parametrize("tone", ["none", "hue", "reinhard"])
 @pytest.mark.parametrize("name", RESPONSES)
 def test_codes_agree(gpu, name, tone):
     exposure, response = Exposure(tone=tone), RESPONSES[name]
@@ -44,7 +44,7 @@ def test_codes_agree(gpu, name, tone):
     assert len(np.unique(expected)) > 200
 
 
-@pytest.mark.parametrize("tone", ["none", "reinhard"])
+@pytest.mark.parametrize("tone", ["none", "hue", "reinhard"])
 @pytest.mark.parametrize("name", RESPONSES)
 def test_infinite_light_is_white(gpu, name, tone):
     light = np.array([[[np.inf, 0.25, np.inf], [0.0, np.inf, 60000.0]]])

@@ -24,16 +24,35 @@ def test_more_light_is_never_darker_and_stays_within_the_screen(tone):
         assert shown.max() < 1
 
 
+def test_what_is_brighter_than_the_screen_keeps_its_hue():
+    """The order of the channels and the ratio of their distances from white stay."""
+    warm = np.array([1.0, 0.6, 0.2])
+    steps = [tone_curve(k * warm, "hue") for k in (0.5, 1.0, 1.001, 2.0, 8.0, 1e6)]
+    np.testing.assert_array_equal(steps[0], 0.5 * warm)
+    np.testing.assert_allclose(steps[1], warm)
+    np.testing.assert_allclose(steps[2], warm, atol=1e-3)
+    np.testing.assert_allclose(steps[3], warm + (1 - warm) * (1 - np.sqrt(0.5)))
+    assert (np.diff(np.array(steps), axis=0) >= 0).all()
+    for step in steps[1:]:
+        np.testing.assert_allclose((1 - step[1]) / (1 - step[2] + 1e-300), 0.5, rtol=1e-6)
+    np.testing.assert_allclose(steps[-1], 1, atol=2e-3)
+    clipped = tone_curve(8 * warm, "none")
+    assert clipped.tolist() == [1, 1, 1]
+
+
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("tone", ["none", "reinhard"])
+@pytest.mark.parametrize("tone", ["none", "hue", "reinhard"])
 def test_infinite_light_is_white(tone):
     """Captured light above 65504 comes as infinity from half floats."""
     light = np.array([[[np.inf, 0.5, 1e300], [-np.inf, np.inf, 65504.0]]])
     shown = tone_curve(light, tone)
     assert np.isfinite(shown).all()
     assert shown[0, 0, 0] == shown[0, 1, 1] == 1
-    assert shown[0, 1, 0] == 0
     codes = encode(light, Exposure(tone=tone), SRGB, 1.0)
+    if tone == "hue":  # infinitely brighter than the screen in one channel: white in all
+        assert (codes == 255).all()
+        return
+    assert shown[0, 1, 0] == 0
     assert codes[0].tolist() == [[255, 188, 255], [0, 255, 255]]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite.model import Ambient
-from andon.lamps import Lamp, PointLamp, intensity_cd
+from andon.lamps import Lamp, PointLamp, SphereLamp, intensity_cd
 from andon.quantities import CameraFrame, Surface
 from andon.spaces import View
 
@@ -92,8 +92,10 @@ class Disc:
 def disc_of(lamp: Lamp, eye: Float, /) -> Disc | None:
     """The disc that `lamp` is drawn as for `eye` (3,); None for what is not drawn so.
 
-    Lamps with an area are drawn as the bodies that they are.
+    Lamps with an area are drawn as the bodies that they are; a ball without one as a disc.
     """
+    if isinstance(lamp, SphereLamp) and lamp.drawn and not lamp.body:
+        return Disc(lamp.position_m, lamp.radius_m, lamp.luminance_cd_m2)
     if not isinstance(lamp, PointLamp) or lamp.visible_radius_m <= 0:
         return None
     return Disc(lamp.position_m, lamp.visible_radius_m, lamp_luminance(lamp, eye))

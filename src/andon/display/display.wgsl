@@ -13,6 +13,11 @@ const LARGEST: f32 = 1e30;
 
 fn tone_curve(linear: vec3f) -> vec3f {
   if (display.tone == 0u) { return clamp(linear, vec3f(0.0), vec3f(1.0)); }
+  if (display.tone == 2u) {
+    let light = clamp(linear, vec3f(0.0), vec3f(LARGEST));
+    let most = max(max(light.x, light.y), max(light.z, 1.0));
+    return light / most + (1.0 - light / most) * (1.0 - inverseSqrt(most));
+  }
   let width = 1.0 - SHOULDER_START;
   let over = clamp((linear - SHOULDER_START) / width, vec3f(0.0), vec3f(LARGEST));
   return select(max(linear, vec3f(0.0)), SHOULDER_START + width * over / (1.0 + over), linear > vec3f(SHOULDER_START));

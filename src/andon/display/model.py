@@ -16,9 +16,10 @@ class Exposure:
     ----------
     units_per_cd_m2 : display-linear units per cd/m², > 0; None repeats the camera
         (1/luminance_per_unit), under which unchanged light keeps its bytes.
-    tone : ``none`` clips at white; ``reinhard`` bends what is above 0.6 of white towards white
-        (leaves identity below that).
+    tone : ``none`` clips each channel at white, as a camera does; ``hue`` lets what is brighter
+        than white fade to white without changing its hue; ``reinhard`` bends what is above 0.6 of
+        white towards white (leaves identity below that).
     """
 
     units_per_cd_m2: float | None = None
-    tone: Literal["none", "reinhard"] = "none"
+    tone: Literal["none", "hue", "reinhard"] = "none"

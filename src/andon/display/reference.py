@@ -19,13 +19,20 @@ LARGEST = 1e30
 
 
 def tone_curve(linear: NDArray[Any], tone: str, /) -> NDArray[Any]:
-    """Display-linear values in [0, 1] from unbounded ones, any shape, per channel.
+    """Display-linear values in [0, 1] from unbounded ones (..., 3); but for ``hue`` per channel.
 
+    ``hue``: where the largest channel m is above 1, y = x/m + (1 − x/m)·(1 − 1/√m): ratios of the
+    channels fade to white as light grows, instead of turning yellow where one channel after the
+    other is clipped. Up to white it is the identity.
     ``reinhard``: y = s + (1−s)·x'/(1+x') with x' = (x−s)/(1−s) above s = 0.6: slope 1 at s, white
     only at infinity (the operator of Reinhard et al. 2002, equation 3, applied to the shoulder).
     """
     if tone == "none":
         return np.clip(linear, 0, 1)
+    if tone == "hue":
+        light = np.clip(linear, 0, LARGEST)
+        most = np.maximum(light.max(axis=-1, keepdims=True), 1)
+        return light / most + (1 - light / most) * (1 - 1 / np.sqrt(most))
     # Half floats end at 65504; what is beyond comes as infinity, and is white.
     over = np.clip((linear - SHOULDER_START) / (1 - SHOULDER_START), 0, LARGEST)
     bent = SHOULDER_START + (1 - SHOULDER_START) * over / (1 + over)

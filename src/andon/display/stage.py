@@ -21,7 +21,7 @@ DISPLAY_RECORD = HostStruct(
     "DisplayRecord", (("exposure", "f32"), ("gamma", "f32"), ("tone", "u32"))
 )
 STRUCTS = {DISPLAY_RECORD.name: DISPLAY_RECORD}
-TONES = {"none": 0, "reinhard": 1}
+TONES = {"none": 0, "reinhard": 1, "hue": 2}
 # Samples of a measured response at equal steps of √linear: the error of linear interpolation is
 # below 0.1 code for curves as bent as a gamma of 3.
 CURVE_SAMPLES = 4096

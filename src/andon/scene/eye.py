@@ -191,9 +191,11 @@ class Display(Table):
         description="Linear screen value per cd/m². Default: 1/capture.luminance_per_unit, which "
         "gives light that was not changed its own bytes back.",
     )
-    tone: Literal["none", "reinhard", "fusion"] = Field(
+    tone: Literal["none", "hue", "reinhard", "fusion"] = Field(
         default="none",
-        description="none: clips; reinhard: compresses; fusion: Mertens exposure fusion.",
+        description="none: clips each channel, as a camera does; hue: what is brighter than white "
+        "fades to white and keeps its hue (lamps); reinhard: compresses; fusion: Mertens exposure "
+        "fusion.",
     )
     peak_luminance_cd_m2: Positive | None = Field(
         default=None,

@@ -64,7 +64,7 @@ def expand(
     if shell.transmittance.any():
         lamps.append(_outside(lamp, shell, form, solution))
     if form.is_open:
-        lamps.append(_hidden(lamp, "bulb", lamp.intensity_cd, groups))
+        lamps.append(_bulb(lamp, groups))
         if (shell.transmittance + shell.absorptance).min() < 1:
             lamps += _openings(lamp, form, solution, groups)
     body = _body(lamp, shell, form, solution.outside_cd_m2, solution.inside_cd_m2)
@@ -126,6 +126,19 @@ def _outside(lamp: PointLamp, shell: Shell, form: Form, solution: Solution) -> L
         shadow=_soft(lamp),
         drawn=False,
     )
+
+
+def _bulb(lamp: PointLamp, groups: Iterable[str]) -> Lamp:
+    """What shines through the openings; a bulb of a stated size that shines to all sides is a ball,
+    and the rim of its shell casts a soft shadow."""
+    hidden = _hidden(lamp, "bulb", lamp.intensity_cd, groups)
+    radius = lamp.visible_radius_m
+    if type(lamp) is not PointLamp or radius <= 0 or hidden.shadow is None:
+        return hidden
+    kind = "linear" if hidden.shadow.filter == "exact" else hidden.shadow.filter
+    shadow = replace(SOFT_SHADOW, filter=kind, through=hidden.shadow.through)
+    luminance = lamp.intensity_cd / (np.pi * radius**2)
+    return SphereLamp(hidden.name, luminance, lamp.position_m, radius, shadow=shadow)
 
 
 def _hidden(lamp: PointLamp, what: str, intensity_cd: Float, groups: Iterable[str]) -> PointLamp:

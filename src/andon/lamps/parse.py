@@ -34,11 +34,11 @@ def parse_lamp_option(text: str, /, *, field: str = "--lamp") -> dict[str, Any]:
         raise InputError(f"must have at most {MAX_OPTION_CHARACTERS} characters", field=field)
     table: dict[str, Any] = {}
     for key, value in _pairs(text, field):
-        _put(table, key, _points(key, _parsed(value, f"{field} {key}")), field)
+        _put(table, key, _points(key, _parsed(value, f"{field}: {key}")), field)
     if "preset" in table:
         from andon.scene.presets import expand_preset
 
-        table = expand_preset(table, f"{field} preset")
+        table = expand_preset(table, f"{field}: preset")
     if "kind" not in table:
         remedy = "begin with kind=point,… or preset=bulb,…"
         raise InputError("kind is required", field=field, remedy=remedy)
@@ -83,10 +83,10 @@ def _put(table: dict[str, Any], key: str, value: Any, field: str) -> None:
     for parent in parents:
         entry: Any = table.setdefault(parent, {})
         if not isinstance(entry, dict):
-            raise InputError(f"{parent} has a value already", field=f"{field} {key}")
+            raise InputError(f"{parent} has a value already", field=f"{field}: {key}")
         table = cast(dict[str, Any], entry)
     if last in table:
-        raise InputError("is given twice", field=f"{field} {key}")
+        raise InputError("is given twice", field=f"{field}: {key}")
     table[last] = value
 
 
@@ -124,7 +124,7 @@ def _check_keys(table: dict[str, Any], field: str) -> None:
         near = nearest_name(str(kind), list(LAMP_KINDS))
         raise InputError(
             f"must be one of {', '.join(LAMP_KINDS)}, got {str(kind)[:60]!r}",
-            field=f"{field} kind",
+            field=f"{field}: kind",
             remedy=f"did you mean {near!r}?" if near else None,
         )
     known = list(LAMP_KINDS[kind].model_fields)

@@ -228,26 +228,26 @@ def test_a_lamp_inside_a_wall(refused, folder):
     write_obj(folder / "room.obj", block((4, 3, 6), (0, 0, 0)))
     lamp = "kind=point,name=lost,position=0,0,-9,intensity_cd=5"
     line = refused("--lamp", lamp, depth=None, mesh="room.obj")
-    assert "lamp[0].position: the lamp 'lost' at (0, 0, -9) is inside a wall; move it" in line
+    assert "--lamp 1: position: the lamp 'lost' at (0, 0, -9) is inside a wall; move it" in line
 
 
 # ── lamps ─────────────────────────────────────────────────────────────────────────────────────
 
 LAMPS = [
-    ("kind=point,position=0,0,-1,intensity_cd=-5", "lamp[0].intensity_cd: must be ≥ 0 cd, got -5"),
-    ("kind=point,position=0,0,-1,flux_lm=nan", "lamp[0].flux_lm: must be finite"),
-    ("kind=point,position=0,0,-1,flux_lm=inf", "lamp[0].flux_lm: must be finite"),
+    ("kind=point,position=0,0,-1,intensity_cd=-5", "--lamp 1: intensity_cd: must be ≥ 0 cd"),
+    ("kind=point,position=0,0,-1,flux_lm=nan", "--lamp 1: flux_lm: must be finite"),
+    ("kind=point,position=0,0,-1,flux_lm=inf", "--lamp 1: flux_lm: must be finite"),
     ("kind=point,position=0,0,-1,intensty_cd=5", "did you mean 'intensity_cd'?"),
-    ("kind=pont,position=0,0,-1,flux_lm=5", "--lamp kind: must be one of point"),
+    ("kind=pont,position=0,0,-1,flux_lm=5", "--lamp 1: kind: must be one of point"),
     ("kind=pont,position=0,0,-1,flux_lm=5", "did you mean 'point'?"),
-    ("kind=point,position=0,0,flux_lm=5", "lamp[0].position"),
-    ("kind=point,flux_lm=5", "lamp[0].position: is required"),
-    ("kind=point,position=0,0,-1", "lamp[0]: intensity_cd or flux_lm is required"),
-    ("position=0,0,-1,flux_lm=5", "--lamp: kind is required"),
+    ("kind=point,position=0,0,flux_lm=5", "--lamp 1: position"),
+    ("kind=point,flux_lm=5", "--lamp 1: position: is required"),
+    ("kind=point,position=0,0,-1", "--lamp 1: intensity_cd or flux_lm is required"),
+    ("position=0,0,-1,flux_lm=5", "--lamp 1: kind is required"),
     ("", "--lamp"),
-    ("kind=sphere,position=0,0,-1,flux_lm=5", "lamp[0].radius_m: is required"),
+    ("kind=sphere,position=0,0,-1,flux_lm=5", "--lamp 1: radius_m: is required"),
     ("kind=ies,position=0,0,-1,file=a.ies,direction=0,-1,0", "a.ies: must exist"),
-    ("kind=point,position=0,0,-1,flux_lm=5,shell.radius_m=0", "lamp[0].shell.radius_m"),
+    ("kind=point,position=0,0,-1,flux_lm=5,shell.radius_m=0", "--lamp 1: shell.radius_m"),
     ("kind=point,position=0,0,-1,flux_lm=5,shell.transmittance=0.5", "radius_m, mesh"),
     ("kind=point,position=0,0,-1,flux_lm=1.7e308,rgb=0,0,1", "too large"),
 ]  # fmt: skip
@@ -256,6 +256,30 @@ LAMPS = [
 @pytest.mark.parametrize(("text", "message"), LAMPS)
 def test_lamps(refused, text, message):
     assert message in refused("--lamp", text)
+
+
+ADDED = '[[lamp]]\nkind = "sky"\nname = "sky"\nilluminance_lux = 9.0\n'
+TYPED = [
+    ("kind=point,position=0,0,-1,flux_lm=-1", "andon: --lamp 2: flux_lm: must be ≥ 0 lm, got -1"),
+    ("kind=point,flux_lm=5", "andon: --lamp 2: position: is required; add position=…"),
+    ("kind=point,position=0,0,-1,flux_lm=5,name=sky", "--lamp 2: name: the name 'sky' is taken"),
+    ("kind=point,position=0,0,-1,flux_lm=5,name=a", "'a' is taken by --lamp 1; names are unique"),
+    ("kind=point,position=0,0,-1,flux_lm=5,path=a.csv", "--lamp 2: path: motion from a file"),
+    ("kind=pont,flux_lm=5", "--lamp 2: kind: must be one of point"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "message"), TYPED)
+def test_lamps_are_counted_as_they_are_typed(refused_scene, text, message):
+    line = refused_scene(ADDED, "--lamp", POINT + ",name=a", "--lamp", text)
+    assert message in line
+    assert "scene.toml" not in line
+
+
+def test_lamps_of_the_scene_keep_their_place(refused_scene):
+    bad = ADDED.replace("9.0", "-9.0")
+    line = refused_scene(bad, "--lamp", POINT)
+    assert "scene.toml: lamp[0].illuminance_lux: must be ≥ 0 lx" in line
 
 
 # ── the light of the photograph ───────────────────────────────────────────────────────────────

@@ -185,3 +185,41 @@ def test_a_luminaire_of_the_users_own_file(capfd, folder):
     lux = read_picture(folder / "lux.exr").values
     away = 2.5 * np.sqrt(1 + ((10 - 31.5) / 57.6) ** 2 + ((20 - 23.5) / 57.6) ** 2)
     assert lux[20, 10] == pytest.approx([400 * 2.5 / away**3] * 3, rel=1e-5)
+
+
+TYPED_FILES = {
+    "mesh": "kind=mesh,position=0,0,-1.2,flux_lm=9,mesh=here.obj",
+    "shell": "kind=point,position=0,0,-1.2,flux_lm=9,shell.mesh=here.obj,shell.transmittance=0.5",
+    "texture": "kind=rectangle,position=0,1,-1,direction=0,0,-1,width_m=0.4,height_m=0.4,flux_lm=9,"
+    "texture=here.png",
+}
+
+
+@pytest.mark.parametrize("kind", TYPED_FILES)
+def test_every_file_of_a_lamp_is_looked_for_in_the_current_folder(capfd, folder, kind):
+    """The scene lies elsewhere; what stands beside it under the same name is no mesh."""
+    from worlds import block, write_obj
+
+    beside = folder / "scenes"
+    beside.mkdir()
+    (beside / "scene.toml").write_text(
+        "[rig.camera]\nfx = 57.6\n[ambient]\nilluminance_lux = 200.0\n"
+    )
+    words = ["relight", "photo.png", "--scene", "scenes/scene.toml", "--depth", "depth.npy",
+             "--engine", "reference", "-o", "out.png", "--lamp", TYPED_FILES[kind]]  # fmt: skip
+    for name in ("here.obj", "here.png"):
+        (beside / name).write_text("nothing that could be read")
+    outcome = run_andon(capfd, *words)
+    assert outcome.code == 2
+    assert "here." in outcome.err
+    assert "must exist" in outcome.err, "in the current folder there is none"
+    assert "scenes" not in outcome.err, "the path that is named is the one that was tried"
+    write_obj(folder / "here.obj", block((0.2, 0.2, 0.2), (0, 0, 0)))
+    (folder / "here.png").write_bytes((folder / "photo.png").read_bytes())
+    outcome = run_andon(capfd, *words)
+    assert outcome.code == 0, outcome.err
+
+
+def test_help_says_what_paths_are_relative_to(capfd):
+    text = " ".join(run_andon(capfd, "relight", "--help").out.split())
+    assert "relative to the current folder" in text

@@ -57,6 +57,20 @@ def test_texts_flags_and_inner_tables():
         ("kind=point,position=", "has no value"),
         ("kind=point,position=1,1,1,position=2,2,2", "is given twice"),
         ("kind=point,position=1,position.x=2", "has a value already"),
+        ("kind=bulb,position=0,0,0", "--lamp: kind: bulb is a preset; write preset=bulb"),
+        (
+            "kind=point,shell={radius_m=0.1, transmittance=0.6},flux_lm=9",
+            "--lamp: shell: takes no table in braces; write shell.radius_m=0.1,shell.tran",
+        ),
+        (
+            "kind=point,shell={radius_m=0.1,transmittance=[0.6,0.5,0.4]},flux_lm=9",
+            "write shell.radius_m=0.1,shell.transmittance=[0.6,0.5,0.4]",
+        ),
+        ("kind=point,shell = { radius_m=0.1", "write shell.radius_m=0.1"),
+        (
+            "kind=sphere,position=0,0,0,radius_m=1,shell.radius_m=2",
+            "kind 'sphere' has no key 'shell'; only point, spot and ies have a shell",
+        ),
         ("kind=point,a b=1", "must be key=value,key=value…, got 'a b=1'"),
         ("kind=point," + "x" * 10_000, "at most"),
     ],
@@ -80,6 +94,10 @@ def test_any_text_gives_a_table_or_a_clear_error(text):
         assert "kind" in table
 
 
+def test_braces_in_a_name_are_a_name():
+    assert parse_lamp_option("kind=point,name={a},flux_lm=1")["name"] == "{a}"
+
+
 @given(st.tuples(*[st.floats(allow_nan=False, allow_infinity=False)] * 3))
 def test_numbers_come_back_exactly(position):
     text = "kind=point,position=" + ",".join(map(repr, position))
@@ -91,5 +109,13 @@ def test_points_are_written_one_after_the_other():
     assert table["ends"] == [[0, 1, -2], [1, 1, -2]]
     table = parse_lamp_option("kind=polygon,vertices=0 0 0 1 0 0 0 1 0,flux_lm=9")
     assert table["vertices"] == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    for text in (
+        "[[0,0,0],[1,0,0],[0,1,0]]",
+        "[[0, 0, 0], [1, 0, 0] [0, 1, 0]]",
+        "[0,0,0],[1 0 0],[0;1;0]",
+    ):
+        assert parse_lamp_option(f"kind=polygon,vertices={text},flux_lm=9") == table
+    short = parse_lamp_option("kind=polygon,vertices=[[0,0,0],[1,0],[0,1,0,0]],flux_lm=9")
+    assert short["vertices"] == [[0, 0, 0], [1, 0], [0, 1, 0, 0]]
     odd = parse_lamp_option("kind=polygon,vertices=0 0 0 1,flux_lm=9")
     assert odd["vertices"] == [0, 0, 0, 1]

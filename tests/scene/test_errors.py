@@ -16,9 +16,15 @@ CASES = [
     (POINT + "intensty_cd = 3", "lamp[0].intensty_cd: unknown key 'intensty_cd'; did you mean"),
     ('[[lamp]]\nkind = "pont"', "lamp[0].kind: must be one of 'point', "),
     ('[[lamp]]\nkind = "pont"', "got 'pont'; did you mean 'point'?"),
-    (POINT + "flux_lm = 1\nradius_m = 3", "kind 'point' has no key 'radius_m'; it belongs to sphe"),
+    (POINT + "flux_lm = 1\nradius_m = 3", "kind 'point' has no key 'radius_m'; only sphere, "),
     ('[capture]\nresponse = "gama"', "capture.response.kind: must be one of 'linear'"),
     ("[atmosphere]\nqqqqq = 1", "unknown key 'qqqqq'; known keys: mist"),
+    ('[[lamp]]\nkind = "bulb"', 'lamp[0].kind: bulb is a preset; write preset = "bulb"'),
+    (POINT + "flux_lm = 1\nwidth_m = 3", "only rectangle has width_m"),
+    (
+        POINT.replace("point", "sphere") + "shell.radius_m = 1",
+        "only point, spot and ies have a shel",
+    ),
     # missing
     ("[[lamp]]\nposition = [1, 1, 1]", "lamp[0].kind: is required"),
     ('[[lamp]]\nkind = "point"\nflux_lm = 1', "lamp[0].position: is required; add 'position = …'"),
@@ -100,7 +106,16 @@ CASES = [
         "would count twice; give it",
     ),
     (POINT + 'flux_lm = 1\ntransport = "baked"', "lamp[0].transport: 'baked' needs 'point-1' in b"),
+    # shells
+    (
+        POINT + "flux_lm = 1\nvisible_radius_m = 0.1\nshell.radius_m = 0.1",
+        "lamp[0].visible_radius_m: must be < shell.radius_m, 0.1 m, got 0.1; the bulb is inside",
+    ),
     # keyframes
+    (
+        POINT + "flux_lm = 1\n[[lamp.key]]\ntime_seconds = 1\n[[lamp.key]]\ntime_seconds = 0",
+        "lamp[0].key[1].time_seconds: must be later than the key before, 1 s, got 0 s",
+    ),
     (POINT + "flux_lm = 1\n[[lamp.key]]\ntime_seconds = 0", "lamp[0].key[0]: the key sets nothing"),
     (
         POINT + "flux_lm = 1\n[[lamp.key]]\ntime_seconds = 0\nintensity_cd = 1",

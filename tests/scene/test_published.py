@@ -7,7 +7,7 @@ import pytest
 
 from andon.scene import LAMP_KINDS, json_schema, parse_scene, scene_reference_markdown
 from andon.scene.base import Table
-from andon.scene.reference import EXAMPLE
+from andon.scene.reference import EXAMPLE, EXAMPLES
 from andon.scene.schema import publish
 
 jsonschema = pytest.importorskip("jsonschema")
@@ -33,6 +33,14 @@ def validator():
 
 def test_the_example_is_valid(validator):
     validator.validate(tomllib.loads(EXAMPLE))
+
+
+@pytest.mark.parametrize("path", EXAMPLES)
+def test_the_examples_of_tables_are_scenes_and_published(validator, path):
+    text = EXAMPLES[path].split("```toml\n")[1].split("```")[0]
+    validator.validate(tomllib.loads(text))
+    parse_scene(text)
+    assert EXAMPLES[path] in scene_reference_markdown()
 
 
 def test_shorthands_are_valid(validator):

@@ -111,6 +111,9 @@ def relight(
     Without a pose in the camera file, the camera stands at the origin and looks along −Z, +Y is
     up: `position=0,0.5,-2` is two metres ahead and half a metre up.
 
+    Paths in options, those in `--lamp` too, are relative to the current folder; those in a scene
+    file to the scene's.
+
     Examples:
 
         andon relight room.png --depth depth.npy --camera cam.toml
@@ -118,7 +121,8 @@ def relight(
 
         andon relight room.png --scene night.toml -o lit.png --illuminance-map lux.exr
     """
-    from andon.cli.relight import RelightOptions, run
+    from andon.cli.relight import run
+    from andon.cli.typed import RelightOptions
 
     run(
         RelightOptions(

@@ -20,7 +20,7 @@ from andon.scene.base import (
 )
 from andon.scene.lamp_parts import Flicker, LampKey, Shell
 
-__all__ = ["LampTable", "Shadowing", "Shelled"]
+__all__ = ["LampTable", "Shadowing", "Shelled", "of_other_kinds"]
 
 _COLOUR_KEYS = ("chromaticity_xy", "temperature_k", "rgb")
 
@@ -79,14 +79,10 @@ class LampTable(Table):
 
     @classmethod
     def _unknown(cls, key: str) -> PydanticCustomError:
-        owners = [kind for kind, table in _kinds().items() if key in table.model_fields]
+        owners = of_other_kinds(key)
         if owners:
             (mine,) = cls.model_fields["kind"].annotation.__args__  # pyright: ignore
-            return refusal(
-                f"kind {mine!r} has no key {key!r}",
-                key=key,
-                remedy=f"it belongs to {', '.join(owners)}",
-            )
+            return refusal(f"kind {mine!r} has no key {key!r}", key=key, remedy=owners)
         return unknown_key(key, list(cls.model_fields))
 
     @model_validator(mode="after")
@@ -129,6 +125,13 @@ class LampTable(Table):
             raise refusal("at least one channel must be > 0", key="rgb")
 
     def _check_keys(self) -> None:
+        for index, (before, after) in enumerate(pairwise(self.key), start=1):
+            if not after.time_seconds > before.time_seconds:
+                raise refusal(
+                    f"must be later than the key before, {before.time_seconds:g} s, got "
+                    f"{after.time_seconds:g} s",
+                    key=f"key[{index}].time_seconds",
+                )
         for index, key in enumerate(self.key):
             for name in key.animated:
                 if getattr(self, name, None) is None:
@@ -139,13 +142,6 @@ class LampTable(Table):
                     )
             if not key.animated:
                 raise refusal("the key sets nothing", key=f"key[{index}]")
-        for index, (before, after) in enumerate(pairwise(self.key), start=1):
-            if not after.time_seconds > before.time_seconds:
-                raise refusal(
-                    f"must be later than the key before, {before.time_seconds:g} s, got "
-                    f"{after.time_seconds:g} s",
-                    key=f"key[{index}].time_seconds",
-                )
         self._check_turns()
 
     def _check_turns(self) -> None:
@@ -158,6 +154,17 @@ class LampTable(Table):
                     key=f"key[{index}].direction",
                     remedy="add a key between them",
                 )
+
+
+def of_other_kinds(key: str) -> str:
+    """Which kinds of lamps have `key`, in words; empty where none has."""
+    owners = [kind for kind, table in _kinds().items() if key in table.model_fields]
+    if not owners:
+        return ""
+    what = "a shell" if key == "shell" else key
+    *others, last = owners
+    listed = f"{', '.join(others)} and {last}" if others else last
+    return f"only {listed} {'have' if others else 'has'} {what}"
 
 
 def _kinds() -> dict[str, type[LampTable]]:
@@ -198,3 +205,14 @@ class Shelled(Table):
         default=None,
         description="Translucent shell around the lamp.",
     )
+
+    @model_validator(mode="after")
+    def _check_ball(self) -> Shelled:
+        radius = self.shell.radius_m if self.shell is not None else None
+        if radius is not None and self.visible_radius_m >= radius:
+            raise refusal(
+                f"must be < shell.radius_m, {radius:g} m, got {self.visible_radius_m:g}",
+                key="visible_radius_m",
+                remedy="the bulb is inside its shell; 0: it is not drawn",
+            )
+        return self

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from itertools import count
 from pathlib import Path
@@ -92,7 +93,7 @@ class Scene(Table):
     )
 
     _folder: Path = PrivateAttr(default=Path())
-    _trusted: frozenset[str] = PrivateAttr(default=frozenset())
+    _trusted: dict[str, Path] = PrivateAttr(default_factory=dict[str, Path])
     _file: str = PrivateAttr(default="scene.toml")
 
     @property
@@ -120,10 +121,11 @@ class Scene(Table):
         """The same scene, allowed to name these files wherever they are.
 
         For files that the *user* named, on a command line or in a program: confinement is there
-        for what a stranger's scene file names.
+        for what a stranger's scene file names. `paths` are relative to the current folder; the
+        scene has them as absolute paths, so that none is taken for a file beside the scene.
         """
         copy = self.model_copy()
-        copy._trusted = self._trusted | {str(path) for path in paths}
+        copy._trusted = self._trusted | {os.path.abspath(path): Path(path) for path in paths}
         return copy
 
     def path(self, reference: str, field: str) -> Path:
@@ -134,8 +136,7 @@ class Scene(Table):
         from andon.files.paths import confined
 
         if reference in self._trusted:
-            return Path(reference)
-
+            return self._trusted[reference]
         try:
             return confined(reference, self._folder)
         except InputError as error:

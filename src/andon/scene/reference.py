@@ -15,7 +15,7 @@ from andon.scene.lamp_base import LampTable
 from andon.scene.model import Scene
 from andon.scene.presets import PRESETS
 
-__all__ = ["EXAMPLE", "scene_reference_markdown"]
+__all__ = ["EXAMPLE", "EXAMPLES", "scene_reference_markdown"]
 
 EXAMPLE = """\
 [scene]
@@ -69,6 +69,34 @@ from the program's own models; `scene.schema.json` is the same for editors.
 """
 
 
+EXAMPLES = {
+    "rig": """\
+Two eyes, each with its picture:
+
+```toml
+[rig]
+kind = "stereo"
+
+[rig.left]
+hfov_degrees = 60.0
+position = [-0.0315, 0.0, 0.0]
+look_at = [-0.0315, 0.0, -1.0]
+
+[rig.right]
+hfov_degrees = 60.0
+position = [0.0315, 0.0, 0.0]
+look_at = [0.0315, 0.0, -1.0]
+
+[capture]
+source = { left = "left.png", right = "right.png" }
+```
+
+`andon relight left.png --scene stereo.toml --view left -o left-lit.png`: the photograph that is
+given is that of the eye that `--view` names (left, unless named); the other eye keeps its own.
+""",
+}
+
+
 _PRESETS = """\
 ### `preset = "…"`
 
@@ -117,6 +145,8 @@ def _sections(path: str, info: FieldInfo, seen: list[type[Table]]) -> Iterator[s
         yield f"## `{head}`\n\n{getdoc(table)}\n"
         if table.model_fields:
             yield _key_table(table, list(table.model_fields))
+        if path in EXAMPLES:
+            yield EXAMPLES[path]
         for name, inner in table.model_fields.items():
             yield from _sections(f"{path}.{name}", inner, seen)
 

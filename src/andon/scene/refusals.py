@@ -11,6 +11,7 @@ from pydantic_core import ErrorDetails
 from andon.errors import InputError, nearest_name
 from andon.scene.base import shown
 from andon.scene.lamp import LAMP_KINDS
+from andon.scene.presets import PRESETS
 
 __all__ = ["input_error"]
 
@@ -97,6 +98,8 @@ def _translate(fault: ErrorDetails) -> tuple[str, str, str | None]:
         given = came.get("kind", "")  # pyright: ignore
         if given == "":
             return f"{field}.kind", "is required", f"one of {', '.join(LAMP_KINDS)}"
+        if isinstance(given, str) and given in PRESETS:
+            return f"{field}.kind", f"{given} is a preset", f'write preset = "{given}"'
         choices = ", ".join(repr(name) for name in LAMP_KINDS)
         return f"{field}.kind", *_choice(choices, given)  # pyright: ignore
     if kind in _COMPARISONS:

@@ -70,7 +70,7 @@ def solve_shell(shell: Shell, beam: Beam, /) -> Solution:
     outside, inside = _at_vertices(form, beam, balances, incident, met_lm, through.sum(axis=0))
     return Solution(
         met_lm / beam.flux_lm,
-        evened(form.facets, through / (np.pi * area[:, None])),
+        evened(through / (np.pi * area[:, None]), area, form.facet_groups),
         left[: len(form.lids)] / (np.pi * np.array(lid_areas)[:, None]),
         left.sum(axis=0) / gap_sr if form.has_gaps else np.zeros(3),
         outside,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from andon.lamps.shells.cutting import cut_long, widest_edge
 from andon.lamps.shells.layer import FIELD, Layer, clean_layer, rims
 from andon.lamps.shells.lids import fan, flat_lid, vector_area
 from andon.lamps.shells.model import Shell
+from andon.lamps.shells.pairs import flat_pairs
 from andon.lamps.solids import icosphere
 from andon.quantities import Geometry
 
@@ -66,6 +67,11 @@ class Form:
     def is_open(self) -> bool:
         """Some light gets out without meeting the shell."""
         return bool(self.lids) or self.has_gaps
+
+    @cached_property
+    def facet_groups(self) -> NDArray[np.int32]:
+        """(n,) facets of one number shine alike, whatever shines inside."""
+        return flat_pairs(self.facets)
 
 
 @lru_cache(maxsize=32)

@@ -14,7 +14,7 @@ from andon.lamps.shells.beams import solid_angles
 from andon.lamps.shells.cutting import cut_long, widest_edge
 from andon.lamps.shells.layer import FIELD, Layer, clean_layer, rims
 from andon.lamps.shells.lids import fan, flat_lid, vector_area
-from andon.lamps.shells.model import Shell
+from andon.lamps.shells.model import KEPT, Shell
 from andon.lamps.shells.pairs import flat_pairs
 from andon.lamps.solids import icosphere
 from andon.quantities import Geometry
@@ -74,9 +74,9 @@ class Form:
         return flat_pairs(self.facets)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=KEPT)
 def form_of(shell: Shell, /) -> Form:
-    """The form of `shell`; kept for as long as shells are few.
+    """The form of `shell`; kept for as long as there are few others.
 
     Raises `InputError` for a mesh that is no shell: see `clean_layer`; the lamp is outside; it
     covers itself.

@@ -18,7 +18,11 @@ from andon.lamps import (
     body_of,
     resolve_bodies,
     resolve_lamps,
+    resources,
 )
+from andon.lamps.shells import exact
+from andon.lamps.shells.exact import solve_shell
+from andon.lamps.shells.form import form_of
 from andon.quantities import photometric
 from andon.scene import scene_from_dict
 from lamps.shell_worlds import area_lm, areas
@@ -317,3 +321,23 @@ def test_names_of_a_shells_parts_are_not_taken_twice(folder):
     assert len(resolve_lamps(scene(folder, shade), 0)) == 3
     with pytest.raises(InputError, match="'lantern: bulb' is taken"):
         resolve_lamps(scene(folder, shade, LANTERN | {"name": "lantern: bulb"}), 0)
+
+
+def test_many_shells_are_solved_once(folder):
+    """Seventy different shells: the next frame finds all of them."""
+    for number in range(3):
+        write_obj(folder / f"{number}.obj", block((0.2, 0.3 + 0.1 * number, 0.2), (0, 0, 0)))
+    lamps = [
+        LANTERN
+        | {"name": f"lantern {i}", "position": [i, 1, 0]}
+        | {"shell": {"mesh": f"{i % 3}.obj", "transmittance": (i + 1) / 100}}
+        for i in range(70)
+    ]
+    wanted = scene(folder, *lamps)
+    resolve_lamps(wanted, 0)
+    caches = (resources._geometry, resources._shell, form_of, solve_shell, exact._shares)
+    before = [cache.cache_info() for cache in caches]
+    resolve_lamps(wanted, 0.5)
+    after = [cache.cache_info() for cache in caches]
+    assert [info.misses for info in after] == [info.misses for info in before]
+    assert after[1].hits >= before[1].hits + 70

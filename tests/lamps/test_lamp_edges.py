@@ -1,13 +1,19 @@
 """Lamps as lists of edges: nothing is lost where edges are shared or left out."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
 from andon.errors import InputError
+from andon.lamps import resolve_lamps
 from andon.lamps.areas import MeshLamp, PolygonLamp
+from andon.lamps.coarse import triangle_areas
 from andon.lamps.edges import mesh_edges, polygon_edges, textured_edges
 from andon.lamps.form_factors import edge_factor, edges_factor, mesh_factor, polygon_factor
-from worlds import ball, block, unit
+from andon.lamps.shells.pairs import evened, flat_pairs
+from andon.scene import scene_from_dict
+from worlds import ball, block, unit, write_obj
 
 GREY = np.ones(3)
 SQUARE = np.array([[-0.5, -0.5, 0], [0.5, -0.5, 0], [0.5, 0.5, 0], [-0.5, 0.5, 0]])
@@ -79,6 +85,65 @@ def test_shared_edges_come_once_and_flat_ones_never(kind, count):
     assert edges.left_plane.shape == (count, 4)
     np.testing.assert_allclose(np.linalg.norm(edges.right_plane[:, :3], axis=1), 1)
     assert light is None
+
+
+@dataclass(frozen=True)
+class Grouped(MeshLamp):
+    """Says which facets always shine alike."""
+
+    facet_groups: np.ndarray | None = None
+
+
+def test_edges_are_those_of_the_form_whatever_the_light():
+    """A box whose panes shine alike keeps 12 edges, one whose facets are free 18, dark or not."""
+    box = block((0.5, 1, 0.7), (0, 0, 0))
+    normal = np.cross(*np.moveaxis(np.diff(box.positions[box.triangles], axis=1), 1, 0))
+    panes = np.unique(np.round(unit(normal)), axis=0, return_inverse=True)[1].ravel()
+    free = np.random.default_rng(4).uniform(0, 5, (12, 3))
+    for light in (free, free * [1, 0, 0], 0 * free, 0 * free + 1):
+        for groups, count, own in ((panes, 12, light[panes]), (None, 18, light)):
+            lamp = Grouped(
+                "m", GREY, positions_m=box.positions, triangles=box.triangles,
+                facet_luminance_cd_m2=own, facet_groups=groups,
+            )  # fmt: skip
+            edges = mesh_edges(lamp)
+            assert len(edges.a) == count
+            place, up = receivers(20)
+            truth = mesh_factor(place, up, box.positions, box.triangles, own)
+            np.testing.assert_allclose(summed(edges, place, up), truth, atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["point", "spot"])
+def test_a_shell_keeps_its_edges_while_its_light_comes_and_turns(tmp_path, kind):
+    write_obj(tmp_path / "box.obj", block((0.2, 0.3, 0.2), (0, 0, 0)))
+    first = {"time_seconds": 0, "intensity_cd": 0, "position": [0, 1, 0]}
+    last = {"time_seconds": 2, "intensity_cd": 80, "position": [2, 1, 0.7]}
+    table = {"kind": kind, "position": [0, 1, 0], "intensity_cd": 1, "rgb": [1, 0.5, 0]}
+    if kind == "spot":
+        table["direction"], first["direction"], last["direction"] = (
+            [0, -1, 0],
+            [0, -1, 0],
+            [1, 0, 0],
+        )
+    table |= {"shell": {"mesh": "box.obj", "transmittance": 0.5}, "key": [first, last]}
+    scene = scene_from_dict({"lamp": [table]}, folder=tmp_path)
+    found = [[x for x in resolve_lamps(scene, t) if isinstance(x, MeshLamp)] for t in (0, 0.7, 2)]
+    (dark,), *lit = found
+    assert not dark.facet_luminance_cd_m2.any()
+    count = len(mesh_edges(dark).a)
+    assert [len(mesh_edges(lamp).a) for (lamp,) in lit] == [count, count]
+
+
+def test_pairs_shine_alike_and_keep_their_flux():
+    box = block((0.2, 0.3, 0.2), (0, 0, 0))
+    corners = box.positions[box.triangles]
+    groups = flat_pairs(corners)
+    assert len(np.unique(groups)) == 6
+    area, light = triangle_areas(corners), np.random.default_rng(5).uniform(0, 5, (12, 3))
+    even = evened(light, area, groups)
+    np.testing.assert_allclose(area @ even, area @ light)
+    assert len(np.unique(even, axis=0)) == 6
+    np.testing.assert_array_equal(evened(light, area, np.arange(12, dtype=np.int32)), light)
 
 
 @pytest.mark.parametrize("two_sided", [False, True])

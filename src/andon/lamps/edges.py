@@ -7,8 +7,9 @@ the facet on its left and the one on its right as seen from outside:
     E = Σ ( L_left·front_left − L_right·front_right ) · edge_factor
 
 where front is 1 for a receiver before that facet's plane and 0 behind it. Inner edges between
-facets of one plane and one luminance cancel for every receiver and are left out: a box has 12
-edges, not 36.
+facets of one plane that always shine alike cancel for every receiver and are left out: a box has
+12 edges, not 36. Which these are is a matter of form (`facet_groups`), not of luminance at some
+moment: a lamp keeps its edges, and a shader its buffers, while the light changes or goes out.
 
 A luminous picture is a division into cells of one luminance each, whose inner edges carry the
 *difference* of two cells. Its error is that of a picture made coarse: flux is kept, detail is not.
@@ -28,6 +29,7 @@ cells       edges 0.1 s  0.25 s  0.5 s   1 s     2 s
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,7 +86,8 @@ def mesh_edges(lamp: MeshLamp, /) -> FacetEdges:
     """All edges of a mesh that do not cancel, shared ones once.
 
     Vertices at one place are one. Triangles without area are left out; edges with one facet, and
-    with more than two, are kept as often as it takes.
+    with more than two, are kept as often as it takes. Of facets with luminances of their own, only
+    those of one number in the lamp's `facet_groups` (m,) shine alike; without it, none do.
     """
     places, same = np.unique(np.asarray(lamp.positions_m, np.float64), axis=0, return_inverse=True)
     triangles = same.reshape(-1)[np.asarray(lamp.triangles)]
@@ -94,16 +97,26 @@ def mesh_edges(lamp: MeshLamp, /) -> FacetEdges:
     kept = size > 0
     normal = normal[kept] / size[kept, None]
     plane = np.c_[normal, -np.sum(normal * corners[kept, 0], axis=1)]
-    facets = lamp.facet_luminance_cd_m2
-    uniform = np.asarray(lamp.luminance_cd_m2, np.float64)
-    luminance = (
-        np.tile(uniform, (len(kept), 1)) if facets is None else np.asarray(facets, np.float64)
-    )
-    return _paired(places, triangles[kept], plane, luminance[kept])
+    luminance, group = _shining(lamp, len(kept))
+    return _paired(places, triangles[kept], plane, luminance[kept], group[kept])
+
+
+def _shining(lamp: MeshLamp, count: int) -> tuple[Float, NDArray[np.integer[Any]]]:
+    """Luminance (m, 3) of each facet, and numbers (m,) that are equal where it always is."""
+    if lamp.facet_luminance_cd_m2 is None:
+        uniform = np.asarray(lamp.luminance_cd_m2, np.float64)
+        return np.tile(uniform, (count, 1)), np.zeros(count, np.int32)
+    groups: NDArray[np.int32] | None = getattr(lamp, "facet_groups", None)
+    own = np.arange(count) if groups is None else groups
+    return np.asarray(lamp.facet_luminance_cd_m2, np.float64), own
 
 
 def _paired(
-    places: Float, triangles: NDArray[np.intp], plane: Float, luminance: Float
+    places: Float,
+    triangles: NDArray[np.intp],
+    plane: Float,
+    luminance: Float,
+    group: NDArray[np.integer[Any]],
 ) -> FacetEdges:
     """Every edge with the facets on its two sides; facet −1 is none."""
     start, end = triangles.reshape(-1), np.roll(triangles, -1, axis=1).reshape(-1)
@@ -120,9 +133,10 @@ def _paired(
         np.concatenate([plane, none[0]])[sides],
         np.concatenate([luminance, none[1]])[sides],
     )
+    shines = np.append(group, -1)[sides]
     extent = float(np.abs(places - places.mean(axis=0)).max(initial=0.0))
     shift = np.abs(planes[:, 0] - planes[:, 1]) / [1, 1, 1, max(extent, 1e-300)]
-    seen = (shift.max(axis=1) > SAME_PLANE) | (light[:, 0] != light[:, 1]).any(axis=1)
+    seen = (shift.max(axis=1) > SAME_PLANE) | (shines[:, 0] != shines[:, 1])
     low, high = np.divmod(slots[seen, 0], len(places))
     return FacetEdges(
         places[low], places[high],

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.lamps.coarse import coarse_corners, triangle_areas
 from andon.lamps.shells.layer import WELD, welded
-from andon.lamps.shells.model import Shell
+from andon.lamps.shells.model import KEPT, Shell
 from andon.quantities import Geometry, photometric
 
 if TYPE_CHECKING:
@@ -29,9 +29,8 @@ UNITLESS_SUFFIXES = {".obj", ".ply"}
 Y_UP_FROM_Z_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 # A glowing picture is blurred by all that it lights: more texels cost memory and show nothing.
 MAX_TEXTURE = 256
-
-
-# Triangles that stand for a mesh as a lamp; see `shells.form`.
+# Triangles that stand for a mesh as a lamp. A shell has 64 of luminances of their own; here flat
+# neighbours shine alike, and most edges between them cost nothing.
 MAX_FACETS = 96
 
 
@@ -96,7 +95,7 @@ def _stamp(path: Path) -> tuple[int, int]:
     return status.st_mtime_ns, status.st_size
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=KEPT)
 def _geometry(source: _Source) -> Geometry:
     from andon.files.meshes import read_mesh
 
@@ -106,7 +105,7 @@ def _geometry(source: _Source) -> Geometry:
     return replace(read, positions=source.scale * read.positions @ turn.T, normals=normals)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=KEPT)
 def _emitters(source: _Source) -> Emitters:
     geometry = _geometry(source)
     size = float(np.ptp(geometry.positions, axis=0).max())
@@ -119,7 +118,7 @@ def _emitters(source: _Source) -> Emitters:
     return Emitters(geometry, corners, float(whole.sum()))
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=KEPT)
 def _shell(
     source: _Source | None,
     radius_m: float | None,
@@ -131,7 +130,7 @@ def _shell(
     return Shell(radius_m, mesh, np.array(transmittance), absorptance, mode)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=KEPT)
 def _texture(path: str, stamp: tuple[int, int]) -> Float:
     from andon.files.pictures import read_picture
     from andon.responses import srgb_decode

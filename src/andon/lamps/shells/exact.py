@@ -15,7 +15,7 @@ from andon.lamps.shells.factors import enclosure_factors
 from andon.lamps.shells.form import Form, form_of
 from andon.lamps.shells.inside import inside_illuminance, spread, vertex_normals
 from andon.lamps.shells.lids import fan, vector_area
-from andon.lamps.shells.model import Shell
+from andon.lamps.shells.model import KEPT, Shell
 from andon.lamps.shells.pairs import evened
 from andon.lamps.shells.radiosity import Balance, balance
 
@@ -50,7 +50,7 @@ class Solution:
     inside_cd_m2: Float
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=KEPT)
 def solve_shell(shell: Shell, beam: Beam, /) -> Solution:
     """The balance of `shell` with a lamp that shines like `beam`; kept, as it does not move."""
     form = form_of(shell)
@@ -70,7 +70,7 @@ def solve_shell(shell: Shell, beam: Beam, /) -> Solution:
     outside, inside = _at_vertices(form, beam, balances, incident, met_lm, through.sum(axis=0))
     return Solution(
         met_lm / beam.flux_lm,
-        evened(form.facets, through / (np.pi * area[:, None])),
+        evened(through / (np.pi * area[:, None]), area, form.facet_groups),
         left[: len(form.lids)] / (np.pi * np.array(lid_areas)[:, None]),
         left.sum(axis=0) / gap_sr if form.has_gaps else np.zeros(3),
         outside,
@@ -100,7 +100,7 @@ def _incident(form: Form, beam: Beam) -> tuple[float, Float]:
     return met, flux / flux.sum() if met else np.zeros(len(flux))
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=KEPT)
 def _shares(shell: Shell) -> tuple[Float, Float]:
     """Form factors among the facets (n, n), and from them to each lid (n, k)."""
     form = form_of(shell)

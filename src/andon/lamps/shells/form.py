@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,8 @@ from andon.lamps.shells.beams import solid_angles
 from andon.lamps.shells.cutting import cut_long, widest_edge
 from andon.lamps.shells.layer import FIELD, Layer, clean_layer, rims
 from andon.lamps.shells.lids import fan, flat_lid, vector_area
-from andon.lamps.shells.model import Shell
+from andon.lamps.shells.model import KEPT, Shell
+from andon.lamps.shells.pairs import flat_pairs
 from andon.lamps.solids import icosphere
 from andon.quantities import Geometry
 
@@ -67,10 +68,15 @@ class Form:
         """Some light gets out without meeting the shell."""
         return bool(self.lids) or self.has_gaps
 
+    @cached_property
+    def facet_groups(self) -> NDArray[np.int32]:
+        """(n,) facets of one number shine alike, whatever shines inside."""
+        return flat_pairs(self.facets)
 
-@lru_cache(maxsize=32)
+
+@lru_cache(maxsize=KEPT)
 def form_of(shell: Shell, /) -> Form:
-    """The form of `shell`; kept for as long as shells are few.
+    """The form of `shell`; kept for as long as there are few others.
 
     Raises `InputError` for a mesh that is no shell: see `clean_layer`; the lamp is outside; it
     covers itself.

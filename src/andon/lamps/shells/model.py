@@ -11,10 +11,13 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.quantities import Geometry
 
-__all__ = ["Shell"]
+__all__ = ["KEPT", "Shell"]
 
 Float = NDArray[np.float64]
 
+# How many shells, and what they are made from, are kept ready: far more than scenes have, because
+# of one more than are kept, visited in turn, none would be found.
+KEPT = 128
 # Sums of shares may exceed 1 by rounding only.
 ROUNDING = 1e-9
 

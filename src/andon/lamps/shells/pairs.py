@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.lamps.coarse import triangle_areas
-
-__all__ = ["evened"]
+__all__ = ["evened", "flat_pairs"]
 
 Float = NDArray[np.float64]
 
@@ -15,21 +13,29 @@ Float = NDArray[np.float64]
 SAME_CORNER, SAME_PLANE = 1e-5, 1e-6
 
 
-def evened(corners: Float, luminance: Float, /) -> Float:
-    """(n, c) luminance of facets (n, 3, 3), paired where two make a flat quadrilateral.
+def flat_pairs(corners: Float, /) -> NDArray[np.int32]:
+    """(n,) a number for each facet (n, 3, 3), shared by two that make a flat quadrilateral.
 
-    Pairs share their longest edges first, as the halves of a rectangle do; flux is kept.
+    Pairs share their longest edges first, as the halves of a rectangle do. From the form alone:
+    what shines alike is then the same for every beam and at all times.
     """
-    area = triangle_areas(corners)
-    values = luminance.copy()
+    number = np.arange(len(corners), dtype=np.int32)
     paired = np.zeros(len(corners), bool)
     for first, second in _neighbours(corners):
-        if paired[first] or paired[second]:
-            continue
-        both = [first, second]
-        values[both] = np.average(luminance[both], axis=0, weights=area[both])
-        paired[both] = True
-    return values
+        if not (paired[first] or paired[second]):
+            paired[[first, second]] = True
+            number[second] = first
+    return number
+
+
+def evened(luminance: Float, area: Float, number: NDArray[np.int32], /) -> Float:
+    """(n, c) luminance, made one for facets of one `number` (n,) by their `area` (n,).
+
+    Flux is kept.
+    """
+    share = area / np.bincount(number, area)[number]
+    columns = [np.bincount(number, share * column)[number] for column in luminance.T]
+    return np.stack(columns, axis=1, dtype=np.float64)
 
 
 def _neighbours(corners: Float) -> list[tuple[int, int]]:

@@ -145,7 +145,10 @@ def lamp_show(
 
 
 @lamp_app.command("presets")
-def lamp_presets() -> None:
+def lamp_presets(
+    long: Annotated[bool, typer.Option("--long", help="Where the numbers come from, too.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="All of it, as JSON.")] = False,
+) -> None:
     """List the lamps that have a name, for `preset = "…"` in a scene and in `--lamp`.
 
     Examples:
@@ -156,4 +159,4 @@ def lamp_presets() -> None:
     """
     from andon.cli.lamp import presets
 
-    presets()
+    presets(long=long, json=json)

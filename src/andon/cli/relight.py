@@ -24,7 +24,7 @@ def run(options: RelightOptions) -> None:
     for path in options.illuminance_maps or ():
         check_writable(path, (".exr", ".png"), "--illuminance-map")
     _refuse_overwriting(options)
-    from andon.cli.notes import depth_text, notes_on
+    from andon.cli.notes import depth_text, notes_on, notes_on_time
     from andon.pipeline import Renderer
 
     scene = scene_of(options)
@@ -40,7 +40,8 @@ def run(options: RelightOptions) -> None:
     _write(options.out, frame.image.rgb, frame.luminance)
     for path in options.illuminance_maps or ():
         write_illuminance(path, frame.illuminance, frame.surface.valid)
-    for line in notes_on(frame, renderer.prepared, options.time_seconds):
+    lines = notes_on_time(options.time_seconds, scene.scene.duration_seconds)
+    for line in (*lines, *notes_on(frame, renderer.prepared, options.time_seconds)):
         note(line)
     pixels, depth = frame.surface.valid.size, depth_text(frame.surface)
     print_report(frame.report, renderer.setup_seconds, pixels, depth)

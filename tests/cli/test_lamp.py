@@ -1,8 +1,11 @@
 """`andon lamp`."""
 
+import json
+
 import pytest
 
 from andon.files.pictures import read_picture
+from andon.scene import LAMP_KINDS
 from photometry_files import ies, ldt
 
 from .command import run_andon, run_refused
@@ -93,3 +96,32 @@ def test_presets_are_listed(capfd, folder):
     for name, preset in PRESETS.items():
         assert name in outcome.out
         assert f"{preset.keys['temperature_k']:g}" in outcome.out
+
+
+def test_presets_are_legible_in_80_columns(capfd, folder, monkeypatch):
+    from andon.scene.presets import PRESETS
+
+    monkeypatch.setenv("COLUMNS", "80")
+    text = run_andon(capfd, "lamp", "presets").out
+    assert max(map(len, text.splitlines())) <= 80
+    assert len(text.splitlines()) <= 2 * len(PRESETS) + 1
+    words = set(text.split())
+    for preset in PRESETS.values():
+        assert set(preset.what.split()) <= words, "no word is broken"
+    assert "EN 60064" not in text
+    assert "EN 60064" in run_andon(capfd, "lamp", "presets", "--long").out
+
+
+def test_presets_as_json_are_lamps(capfd, folder):
+    from andon.scene import scene_from_dict
+    from andon.scene.presets import PRESETS
+
+    entries = json.loads(run_andon(capfd, "lamp", "presets", "--json").out)
+    assert [entry["preset"] for entry in entries] == list(PRESETS)
+    place = {"position": [0, 0, -1], "direction": [0, 0, -1]}
+    for entry in entries:
+        keys = entry["keys"]
+        table = LAMP_KINDS[keys["kind"]].model_fields
+        lamp = keys | {key: value for key, value in place.items() if key in table}
+        scene_from_dict({"lamp": [lamp]})
+        assert entry["source"]

@@ -122,3 +122,59 @@ def test_a_large_lift_is_said(said, tmp_path):
 def test_a_skinned_figure_stands_in_its_pose_of_rest(said, data_dir):
     notes, _ = said("--object", data_dir / "gltf_models" / "CesiumMan.glb")
     assert "CesiumMan.glb has skin and animation: it is drawn in its pose of rest" in notes[0]
+
+
+RECTANGLE = "kind=rectangle,name=pane,position=0,0,-1,width_m=0.3,height_m=0.3,flux_lm=800"
+
+
+@pytest.mark.parametrize(
+    ("more", "said_of_it"),
+    [
+        ("direction=0,0,-1", "covers 11% of the picture: drawn = false hides it, two_sided = true"),
+        ("direction=0,0,-1,drawn=false", None),
+        ("direction=0,0,-1,two_sided=true", None),
+        ("direction=0,0,1", None),
+        ("direction=0,0,-1,width_m=0.07,height_m=0.07", None),
+    ],
+)
+def test_an_unlit_back_that_covers_much(said, more, said_of_it):
+    """0.3 m at 1 m are 18 × 18 of 64 × 48 px; 0.07 m: half a percent."""
+    given = more.split(",")
+    kept = [pair for pair in RECTANGLE.split(",") if pair.split("=")[0] + "=" not in more]
+    notes, _ = said("--lamp", ",".join([*kept, *given]))
+    backs = [note for note in notes if "unlit back" in note]
+    assert len(backs) == (said_of_it is not None), notes
+    if said_of_it:
+        assert f"the unlit back of 'pane' {said_of_it}" in backs[0]
+
+
+@pytest.mark.parametrize(
+    ("lamp", "what"),
+    [
+        (f"{BULB.replace('0,0,-1', '0,0,-0.1')},shell.radius_m=0.5", "shell of 'bulb'"),
+        (f"{BULB},shell.radius_m=0.5", None),
+        ("kind=sphere,name=ball,position=0,0,0.1,radius_m=0.5,flux_lm=9", "body of 'ball'"),
+        ("kind=disk,name=flat,position=0,0,-0.001,direction=0,0,1,radius_m=0.5,flux_lm=9", None),
+    ],
+)
+def test_the_camera_inside_a_lantern(said, lamp, what):
+    inside = [note for note in said("--lamp", lamp)[0] if "inside" in note]
+    assert inside == ([f"the camera is inside the {what}: move it"] if what else [])
+
+
+@pytest.mark.parametrize(
+    ("time", "duration", "said_of_it"),
+    [
+        (-1, 0, "--time -1 is before 0"),
+        (3, 2, "--time 3 is after its end, 2 s"),
+        (3, 0, None),
+        (2, 2, None),
+    ],
+)
+def test_a_moment_outside_the_session(said, tmp_path, time, duration, said_of_it):
+    (tmp_path / "scene.toml").write_text(
+        f"[scene]\nduration_seconds = {duration}\n[rig.camera]\nfx = 57.6\n"
+        "[surface]\ndepth = 'depth.npy'\n"
+    )
+    notes, _ = said("--time", time, given=("--scene", "scene.toml"))
+    assert [note.split(":")[0] for note in notes] == ([said_of_it] if said_of_it else [])

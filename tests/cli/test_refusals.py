@@ -323,6 +323,23 @@ def test_a_scene_without_ambient(refused_scene):
     assert "scene.toml: ambient: is missing: without E0" in line
 
 
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--tone", "reinhart"], "andon: --tone: must be one of 'none', 'reinhard', "),
+        (["--tone", "reinhart"], "got 'reinhart'; did you mean 'reinhard'?"),
+        (["--exposure", "-1"], "andon: --exposure: must be > 0, got -1.0"),
+    ],
+)
+def test_tones_and_exposures_that_are_none(refused, options, message):
+    assert message in refused(*options)
+
+
+def test_a_tone_of_the_scene_is_the_scenes(refused_scene):
+    line = refused_scene("[display]\ntone = 'reinhart'\n", "--exposure", "1")
+    assert "scene.toml: display.tone: must be one of" in line
+
+
 # ── outputs ───────────────────────────────────────────────────────────────────────────────────
 
 

@@ -223,3 +223,29 @@ def test_every_file_of_a_lamp_is_looked_for_in_the_current_folder(capfd, folder,
 def test_help_says_what_paths_are_relative_to(capfd):
     text = " ".join(run_andon(capfd, "relight", "--help").out.split())
     assert "relative to the current folder" in text
+
+
+def test_exposure_and_tone_are_those_of_the_display(capfd, folder):
+    """A photograph that nothing changes: half the exposure halves the linear screen value."""
+    from andon.responses import srgb_decode, srgb_encode
+
+    photo = srgb_decode(read_picture(folder / "photo.png").values / 255)
+    usual = np.pi / 200
+    relight(capfd, "--engine", "reference", "--ambient-lux", 200, "--exposure", usual / 2)
+    half = read_picture(folder / "out.png").values
+    assert_agree(half, np.rint(255 * srgb_encode(photo / 2)), atol=1)
+    bright = ["--engine", "reference", "--ambient-lux", 200, "--exposure", 8 * usual]
+    relight(capfd, *bright)
+    clipped = (read_picture(folder / "out.png").values == 255).mean()
+    relight(capfd, *bright, "--tone", "reinhard")
+    assert (read_picture(folder / "out.png").values == 255).mean() < clipped / 2
+    assert clipped > 0.5
+    scene = "[rig.camera]\nfx = 57.6\n[surface]\ndepth = 'depth.npy'\n"
+    scene += f"[ambient]\nilluminance_lux = 200.0\n[display]\nexposure = {usual}\n"
+    (folder / "scene.toml").write_text(scene)
+    outcome = run_andon(
+        capfd, "relight", "photo.png", "--scene", "scene.toml", "--exposure", usual / 2,
+        "--engine", "reference", "-o", "scene.png",
+    )  # fmt: skip
+    assert outcome.code == 0, outcome.err
+    assert (read_picture(folder / "scene.png").values == half).all(), "options win"

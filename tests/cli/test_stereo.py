@@ -54,7 +54,8 @@ def test_the_photograph_is_that_of_the_eye_that_is_named(capfd, folder, view):
 
 def test_the_other_eye_keeps_its_own_picture(folder):
     """Its name is looked up beside the scene, though a file of that name lies here too."""
-    from andon.cli.typed import RelightOptions, scene_of
+    from andon.cli.options import RelightOptions
+    from andon.cli.typed import scene_of
     from andon.pipeline import Renderer
 
     scene, photo = folder / "rig" / "stereo.toml", folder / "right.png"

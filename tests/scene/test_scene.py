@@ -304,3 +304,17 @@ def test_toml_of_odd_keys_and_empty_tables():
 def test_importing_andon_does_not_import_pydantic():
     code = "import sys, andon; sys.exit('pydantic' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_lamps_and_sources_without_names_do_not_collide():
+    sky = {"kind": "sky", "illuminance_lux": 9.0}
+    point = {"kind": "point", "position": (0, 0, 0), "flux_lm": 9.0}
+    scene = scene_from_dict(
+        {
+            "lamp": [sky, point, point | {"name": "sky-2"}],
+            "ambient": {"illuminance_lux": 1.0, "source": [sky, point]},
+        }
+    )
+    assert [lamp.name for lamp in scene.lamp] == ["sky-1", "point-1", "sky-2"]
+    assert scene.ambient is not None
+    assert [lamp.name for lamp in scene.ambient.source] == ["sky-3", "point-2"]

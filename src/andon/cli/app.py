@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+
+from andon.cli.options import EngineOption, RelightOptions, takes
 
 __all__ = ["app"]
 
@@ -18,39 +19,6 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
 )
-
-
-class DepthKind(StrEnum):
-    """What the numbers of a depth file are."""
-
-    z = "z"
-    distance = "distance"
-    disparity = "disparity"
-
-
-ENGINES = ("auto", "gpu", "reference")
-
-
-def _engine(name: str) -> str:
-    from andon.errors import InputError
-
-    if name not in ENGINES:
-        raise InputError(
-            f"must be one of {', '.join(ENGINES)}, got {name!r}",
-            field="--engine",
-            remedy="gpu draws on every adapter with Vulkan, Metal or D3D12, whoever made it",
-        )
-    return name
-
-
-EngineOption = Annotated[
-    str,
-    typer.Option(
-        callback=_engine,
-        metavar="|".join(ENGINES),
-        help="auto: the GPU where an adapter is found, else the reference.",
-    ),
-]
 
 
 @app.callback(invoke_without_command=True)
@@ -69,43 +37,8 @@ def _root(
 
 
 @app.command()
-def relight(
-    photo: Annotated[Path, typer.Argument(help="PNG, JPEG, EXR or Radiance HDR.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="PNG or JPEG; EXR: cd/m².")],
-    depth: Annotated[
-        Path | None, typer.Option(help="Depth or disparity: NPY, NPZ, PFM, PNG, PGM, EXR.")
-    ] = None,
-    camera: Annotated[
-        Path | None, typer.Option(help="Camera: TOML of Andon, or OpenCV YAML.")
-    ] = None,
-    mesh: Annotated[
-        Path | None, typer.Option(help="Geometry as OBJ, PLY, glTF instead of a depth.")
-    ] = None,
-    scene: Annotated[Path | None, typer.Option(help="Scene file (TOML); options win.")] = None,
-    lamp: Annotated[
-        list[str] | None,
-        typer.Option(help="preset=bulb,position=0.5,0.3,-1.5 or kind=point,…,flux_lm=800"),
-    ] = None,
-    ambient_lux: Annotated[
-        float | None, typer.Option(help="E0: illuminance that the photograph was taken in.")
-    ] = None,
-    dimming: Annotated[float | None, typer.Option(help="Share of E0 that is left, ≥ 0.")] = None,
-    depth_kind: Annotated[DepthKind | None, typer.Option(help="Default: z.")] = None,
-    depth_scale_to_m: Annotated[
-        float | None, typer.Option(help="Metres per unit: 0.001 for millimetres.")
-    ] = None,
-    baseline_m: Annotated[float | None, typer.Option(help="Stereo baseline of disparity.")] = None,
-    doffs_px: Annotated[float | None, typer.Option(help="Offset added to disparity.")] = None,
-    obj: Annotated[
-        list[Path] | None, typer.Option("--object", help="Virtual object (glTF, OBJ, PLY).")
-    ] = None,
-    illuminance_map: Annotated[
-        list[Path] | None, typer.Option(help="EXR: lux; PNG: false colours. May be repeated.")
-    ] = None,
-    view: Annotated[str | None, typer.Option(help="left or right of a stereo rig.")] = None,
-    time: Annotated[float, typer.Option(help="Moment of the session, seconds.")] = 0.0,
-    engine: EngineOption = "auto",
-) -> None:
+@takes(RelightOptions)
+def relight(**typed: Any) -> None:
     """Relight a photograph with virtual lamps.
 
     Without a pose in the camera file, the camera stands at the origin and looks along −Z, +Y is
@@ -122,30 +55,8 @@ def relight(
         andon relight room.png --scene night.toml -o lit.png --illuminance-map lux.exr
     """
     from andon.cli.relight import run
-    from andon.cli.typed import RelightOptions
 
-    run(
-        RelightOptions(
-            photo=photo,
-            out=out,
-            depth=depth,
-            camera=camera,
-            mesh=mesh,
-            scene=scene,
-            lamps=tuple(lamp or ()),
-            ambient_lux=ambient_lux,
-            dimming=dimming,
-            depth_kind=depth_kind.value if depth_kind else None,
-            depth_scale_to_m=depth_scale_to_m,
-            baseline_m=baseline_m,
-            doffs_px=doffs_px,
-            objects=tuple(obj or ()),
-            illuminance_maps=tuple(illuminance_map or ()),
-            view=view,
-            time_seconds=time,
-            engine=engine,
-        )
-    )
+    run(RelightOptions(**typed))
 
 
 @app.command()
@@ -234,7 +145,10 @@ def lamp_show(
 
 
 @lamp_app.command("presets")
-def lamp_presets() -> None:
+def lamp_presets(
+    long: Annotated[bool, typer.Option("--long", help="Where the numbers come from, too.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="All of it, as JSON.")] = False,
+) -> None:
     """List the lamps that have a name, for `preset = "…"` in a scene and in `--lamp`.
 
     Examples:
@@ -245,4 +159,4 @@ def lamp_presets() -> None:
     """
     from andon.cli.lamp import presets
 
-    presets()
+    presets(long=long, json=json)

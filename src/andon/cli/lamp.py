@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
 __all__ = ["presets", "show"]
 
+# Of the table with sources, which are sentences: wider than most terminals, for files and pagers.
+LONG_COLUMNS = 160
+
 
 def show(file: Path, out: Path | None) -> None:
     """Prints the figures of a photometric file and draws its polar diagram."""
@@ -115,8 +118,11 @@ def _draw(distribution: Distribution, file: Path, out: Path) -> None:
     write_png(out, polar_picture(main_planes(distribution), title, facts))
 
 
-def presets() -> None:
-    """Prints the lamps that have a name."""
+def presets(*, long: bool = False, json: bool = False) -> None:
+    """Prints the lamps that have a name: a table of at most 80 columns, or all that is known."""
+    if json:
+        print(_json_text())
+        return
     from rich.console import Console
     from rich.table import Table
 
@@ -124,13 +130,29 @@ def presets() -> None:
 
     table = Table(box=None, pad_edge=False)
     table.add_column("preset", no_wrap=True)
-    for column in ("what", "light", "colour", "kind", "source"):
-        table.add_column(column, overflow="fold")
+    table.add_column("what")
+    for column in ("light", "colour", "kind"):
+        table.add_column(column, no_wrap=True)
+    if long:
+        table.add_column("source")
     for name, preset in PRESETS.items():
         keys = preset.keys
-        colour = f"{keys['temperature_k']:g} K{' daylight' if keys.get('daylight') else ''}"
-        table.add_row(name, preset.what, _light(keys), colour, keys["kind"], preset.source)
-    Console(highlight=False, markup=False).print(table)
+        row = (name, preset.what, _light(keys), f"{keys['temperature_k']:g} K", keys["kind"])
+        table.add_row(*row, *([preset.source] if long else []))
+    Console(highlight=False, markup=False, width=LONG_COLUMNS if long else None).print(table)
+
+
+def _json_text() -> str:
+    """The presets as a JSON list; `keys` are those of a [[lamp]]."""
+    from json import dumps
+
+    from andon.scene.presets import PRESETS
+
+    entries = [
+        {"preset": name, "what": preset.what, "keys": dict(preset.keys), "source": preset.source}
+        for name, preset in PRESETS.items()
+    ]
+    return dumps(entries, indent=2, ensure_ascii=False)
 
 
 def _light(keys: Mapping[str, Any]) -> str:

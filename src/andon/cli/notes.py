@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from andon.cli.body_notes import notes_on_bodies
 from andon.engines.prepared import Prepared
 from andon.lamps import Lamp, SpotLamp
 from andon.pipeline import Frame
@@ -14,7 +15,7 @@ from andon.quantities import Surface
 from andon.rays import RayScene
 from andon.surface.model import SurfaceModel
 
-__all__ = ["depth_text", "notes_on"]
+__all__ = ["depth_text", "notes_on", "notes_on_time"]
 
 # Above this, shadows at the contacts of everyday things (feet, cups, books) are gone.
 LARGE_LIFT_M = 0.02
@@ -34,7 +35,19 @@ def notes_on(frame: Frame, prepared: Prepared, time_seconds: float) -> list[str]
         *_on_depth(surface),
         *_on_objects(surface, model),
         *_on_lamps(surface, prepared, time_seconds),
+        *notes_on_bodies(surface, prepared.bodies(time_seconds), prepared.lamps(time_seconds)),
         *_on_lift(model),
+    ]
+
+
+def notes_on_time(time_seconds: float, duration_seconds: float) -> list[str]:
+    """A moment before the session, or after its end; a still (0 s) has no end."""
+    if time_seconds >= 0 and (time_seconds <= duration_seconds or duration_seconds == 0):
+        return []
+    where = "before 0" if time_seconds < 0 else f"after its end, {duration_seconds:g} s"
+    return [
+        f"--time {time_seconds:g} is {where}: what moves stands as at its nearest key; "
+        "scene.duration_seconds is the session's length"
     ]
 
 

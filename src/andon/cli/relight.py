@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from andon.cli.console import check_writable, note, print_report
-from andon.cli.typed import ASSUMED_AMBIENT_LUX, RelightOptions, named_as_typed, scene_of
+from andon.cli.options import RelightOptions
+from andon.cli.typed import ASSUMED_AMBIENT_LUX, named_as_typed, scene_of
 from andon.errors import InputError
 from andon.quantities import Illuminance, photometric
 
@@ -20,15 +21,15 @@ PICTURES = (".png", ".jpg", ".jpeg")
 def run(options: RelightOptions) -> None:
     """Relights and writes. Raises `InputError` before anything is written."""
     check_writable(options.out, (*PICTURES, ".exr"), "--out")
-    for path in options.illuminance_maps:
+    for path in options.illuminance_maps or ():
         check_writable(path, (".exr", ".png"), "--illuminance-map")
     _refuse_overwriting(options)
-    from andon.cli.notes import depth_text, notes_on
+    from andon.cli.notes import depth_text, notes_on, notes_on_time
     from andon.pipeline import Renderer
 
     scene = scene_of(options)
     _check_view(scene, options.view)
-    with named_as_typed(options, len(scene.lamp) - len(options.lamps), scene.file):
+    with named_as_typed(options, len(scene.lamp) - len(options.lamps or ()), scene.file):
         renderer = Renderer(scene, options.engine)  # type: ignore[arg-type]
         frame = renderer.render(options.time_seconds, options.view)
     if options.scene is None and options.ambient_lux is None:
@@ -37,9 +38,10 @@ def run(options: RelightOptions) -> None:
             "(--ambient-lux states it)"
         )
     _write(options.out, frame.image.rgb, frame.luminance)
-    for path in options.illuminance_maps:
+    for path in options.illuminance_maps or ():
         write_illuminance(path, frame.illuminance, frame.surface.valid)
-    for line in notes_on(frame, renderer.prepared, options.time_seconds):
+    lines = notes_on_time(options.time_seconds, scene.scene.duration_seconds)
+    for line in (*lines, *notes_on(frame, renderer.prepared, options.time_seconds)):
         note(line)
     pixels, depth = frame.surface.valid.size, depth_text(frame.surface)
     print_report(frame.report, renderer.setup_seconds, pixels, depth)
@@ -49,8 +51,8 @@ def run(options: RelightOptions) -> None:
 def _refuse_overwriting(options: RelightOptions) -> None:
     """An output must be no input, and no other output."""
     named = (options.photo, options.depth, options.camera, options.mesh, options.scene)
-    taken = {path.resolve() for path in (*named, *options.objects) if path is not None}
-    for path in (options.out, *options.illuminance_maps):
+    taken = {path.resolve() for path in (*named, *(options.objects or ())) if path is not None}
+    for path in (options.out, *(options.illuminance_maps or ())):
         if path.resolve() in taken:
             raise InputError(
                 "is also an input or another output, and would be overwritten",

@@ -1,4 +1,4 @@
-"""What was typed after ``andon relight``, and the scene that it describes."""
+"""The scene that was typed: a scene file, if there is one, and the options over it."""
 
 from __future__ import annotations
 
@@ -6,45 +6,22 @@ import os
 import re
 from collections.abc import Generator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 
+from andon.cli.options import RelightOptions
 from andon.errors import InputError
 
-__all__ = ["ASSUMED_AMBIENT_LUX", "RelightOptions", "named_as_typed", "scene_of"]
+__all__ = ["ASSUMED_AMBIENT_LUX", "named_as_typed", "scene_of"]
 
 # E0 where nobody states it: a lit living room in the evening (EN 12464-1 asks 300 lx of rooms in
 # which people read). The result then is relative, and says so.
 ASSUMED_AMBIENT_LUX = 300.0
+_DISPLAY = re.compile(r"display\.(tone|exposure)")
 _LAMP = re.compile(r"lamp\[(\d+)\]")
 EYES = ("left", "right")
 # Keys of a lamp and of its inner tables that name a file.
 FILE_KEYS = ("file", "mesh", "texture", "path", "mask")
-
-
-@dataclass(frozen=True)
-class RelightOptions:
-    """The options of the command, as typed."""
-
-    photo: Path
-    out: Path
-    depth: Path | None = None
-    camera: Path | None = None
-    mesh: Path | None = None
-    scene: Path | None = None
-    lamps: tuple[str, ...] = ()
-    ambient_lux: float | None = None
-    dimming: float | None = None
-    depth_kind: str | None = None
-    depth_scale_to_m: float | None = None
-    baseline_m: float | None = None
-    doffs_px: float | None = None
-    objects: tuple[Path, ...] = ()
-    illuminance_maps: tuple[Path, ...] = ()
-    view: str | None = None
-    time_seconds: float = 0.0
-    engine: str = "auto"
 
 
 def scene_of(options: RelightOptions) -> Any:
@@ -61,11 +38,11 @@ def scene_of(options: RelightOptions) -> Any:
     _override(tables, options)
     lamps = [
         parse_lamp_option(text, field=f"--lamp {number}")
-        for number, text in enumerate(options.lamps, start=1)
+        for number, text in enumerate(options.lamps or (), start=1)
     ]
     if options.scene is None:
         _assume(tables, options)
-    given = [options.photo, options.depth, options.camera, options.mesh, *options.objects]
+    given = [options.photo, options.depth, options.camera, options.mesh, *(options.objects or ())]
     named = [path for path in given if path is not None]
     named += [Path(str(table[key])) for lamp in lamps for table, key in _files(lamp)]
     for table, key in [place for lamp in lamps for place in _files(lamp)]:
@@ -77,15 +54,18 @@ def scene_of(options: RelightOptions) -> Any:
 
 @contextmanager
 def named_as_typed(options: RelightOptions, before: int, file: str) -> Generator[None]:
-    """Faults of lamps that were typed name the option, not a place in a file.
+    """Faults of what was typed name the option, not a place in a file.
 
     `before` is how many lamps the scene `file` has of its own.
     """
     try:
         yield
     except InputError as error:
+        shown = _DISPLAY.fullmatch(error.field or "")
+        if shown is not None and getattr(options, shown[1]) is not None:
+            raise InputError(error.rule, field=f"--{shown[1]}", remedy=error.remedy) from error
         place = _LAMP.match(error.field or "")
-        if place is None or not 0 <= int(place[1]) - before < len(options.lamps):
+        if place is None or not 0 <= int(place[1]) - before < len(options.lamps or ()):
             raise
         key = (error.field or "")[place.end() :].lstrip(".")
         raise InputError(
@@ -132,7 +112,7 @@ def _override(tables: dict[str, Any], options: RelightOptions) -> None:
     if options.depth is not None and options.mesh is not None:
         raise InputError("give one of --depth and --mesh", field="--depth")
     depth = {
-        "kind": options.depth_kind,
+        "kind": options.depth_kind and options.depth_kind.value,
         "scale_to_m": options.depth_scale_to_m,
         "baseline_m": options.baseline_m,
         "doffs_px": options.doffs_px,
@@ -150,6 +130,9 @@ def _override(tables: dict[str, Any], options: RelightOptions) -> None:
         tables["ambient"] = {"illuminance_lux": options.ambient_lux, **dimmed}
     if options.dimming is not None:
         tables.setdefault("ambient", {})["dimming"] = options.dimming
+    shown = {"tone": options.tone, "exposure": options.exposure}
+    stated = {key: value for key, value in shown.items() if value is not None}
+    tables["display"] = tables.get("display", {}) | stated
     if options.objects:
         more = [{"name": path.stem, "mesh": _absolute(path)} for path in options.objects]
         tables["object"] = [*tables.get("object", ()), *more]

@@ -171,16 +171,15 @@ class Scene(Table):
     def _name_lamps(cls, value: Any) -> Any:
         if not isinstance(value, dict):
             return value
-        tables = cast(dict[str, Any], value)
-        lamps = _named(tables.get("lamp"))
+        tables = dict(cast(dict[str, Any], value))
         ambient = tables.get("ambient")
-        if isinstance(ambient, dict):
-            sources = cast(dict[str, Any], ambient)
-            ambient = sources | (
-                {"source": _named(sources["source"])} if "source" in sources else {}
-            )
-        given = {"lamp": lamps, "ambient": ambient}
-        return tables | {key: given[key] for key in given if key in tables}
+        sources = cast(dict[str, Any], ambient).get("source") if isinstance(ambient, dict) else ()
+        lamps, known = _named(tables.get("lamp"), sources)
+        if "lamp" in tables:
+            tables["lamp"] = lamps
+        if isinstance(ambient, dict) and "source" in ambient:
+            tables["ambient"] = cast(dict[str, Any], ambient) | {"source": known}
+        return tables
 
     @model_validator(mode="after")
     def _check_between_tables(self) -> Scene:
@@ -228,20 +227,29 @@ class Scene(Table):
                 )
 
 
-def _named(lamps: Any) -> Any:
-    """Lamps whose missing names are filled in: the kind and the first free number."""
-    if not isinstance(lamps, tuple):
-        return lamps
-    entries = cast(tuple[Any, ...], lamps)
-    taken = {str(cast(dict[str, Any], e).get("name")) for e in entries if isinstance(e, dict)}
+def _named(*lists: Any) -> tuple[Any, ...]:
+    """Lists of lamps whose missing names are filled in: the kind and the first free number.
+
+    All lists are numbered together, so that no two lamps of a scene get one name.
+    """
+    taken = {str(entry["name"]) for lamps in lists for entry in _tables(lamps) if "name" in entry}
     counters: dict[str, count[int]] = {}
-    named: list[Any] = []
-    for entry in entries:
-        if isinstance(entry, dict) and "name" not in entry:
-            table = cast(dict[str, Any], entry)
-            kind = str(table.get("kind", "lamp"))[:40]
-            numbers = counters.setdefault(kind, count(1))
-            name = next(name for number in numbers if (name := f"{kind}-{number}") not in taken)
-            entry = table | {"name": name}
-        named.append(entry)
-    return tuple(named)
+
+    def named(entry: Any) -> Any:
+        if not isinstance(entry, dict) or "name" in entry:
+            return cast(Any, entry)
+        table = cast(dict[str, Any], entry)
+        kind = str(table.get("kind", "lamp"))[:40]
+        numbers = counters.setdefault(kind, count(1))
+        name = next(name for number in numbers if (name := f"{kind}-{number}") not in taken)
+        return table | {"name": name}
+
+    return tuple(
+        tuple(map(named, cast(tuple[Any, ...], lamps))) if isinstance(lamps, tuple) else lamps
+        for lamps in lists
+    )
+
+
+def _tables(lamps: Any) -> list[dict[str, Any]]:
+    entries = cast(tuple[Any, ...], lamps) if isinstance(lamps, tuple) else ()
+    return [cast(dict[str, Any], entry) for entry in entries if isinstance(entry, dict)]

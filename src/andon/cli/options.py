@@ -1,0 +1,119 @@
+"""The options of ``andon relight``: the table from which its command line is made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from inspect import signature
+from pathlib import Path
+from typing import Annotated, Any, get_type_hints
+
+import typer
+
+from andon.errors import InputError
+
+__all__ = ["ENGINES", "DepthKind", "EngineOption", "RelightOptions", "takes"]
+
+ENGINES = ("auto", "gpu", "reference")
+
+
+class DepthKind(StrEnum):
+    """What the numbers of a depth file are."""
+
+    z = "z"
+    distance = "distance"
+    disparity = "disparity"
+
+
+def _engine(name: str) -> str:
+    if name not in ENGINES:
+        raise InputError(
+            f"must be one of {', '.join(ENGINES)}, got {name!r}",
+            field="--engine",
+            remedy="gpu draws on every adapter with Vulkan, Metal or D3D12, whoever made it",
+        )
+    return name
+
+
+EngineOption = Annotated[
+    str,
+    typer.Option(
+        callback=_engine,
+        metavar="|".join(ENGINES),
+        help="auto: the GPU where an adapter is found, else the reference.",
+    ),
+]
+
+
+@dataclass(frozen=True)
+class RelightOptions:
+    """The options of the command, as typed; each field is one of them."""
+
+    photo: Annotated[Path, typer.Argument(help="PNG, JPEG, EXR or Radiance HDR.")]
+    out: Annotated[Path, typer.Option("-o", "--out", help="PNG or JPEG; EXR: cd/m².")]
+    depth: Annotated[
+        Path | None, typer.Option(help="Depth or disparity: NPY, NPZ, PFM, PNG, PGM, EXR.")
+    ] = None
+    camera: Annotated[Path | None, typer.Option(help="Camera: TOML of Andon, or OpenCV YAML.")] = (
+        None
+    )
+    mesh: Annotated[
+        Path | None, typer.Option(help="Geometry as OBJ, PLY, glTF instead of a depth.")
+    ] = None
+    scene: Annotated[Path | None, typer.Option(help="Scene file (TOML); options win.")] = None
+    lamps: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--lamp", help="preset=bulb,position=0.5,0.3,-1.5 or kind=point,…,flux_lm=800"
+        ),
+    ] = None
+    ambient_lux: Annotated[
+        float | None, typer.Option(help="E0: illuminance that the photograph was taken in.")
+    ] = None
+    dimming: Annotated[float | None, typer.Option(help="Share of E0 that is left, ≥ 0.")] = None
+    depth_kind: Annotated[DepthKind | None, typer.Option(help="Default: z.")] = None
+    depth_scale_to_m: Annotated[
+        float | None, typer.Option(help="Metres per unit: 0.001 for millimetres.")
+    ] = None
+    baseline_m: Annotated[float | None, typer.Option(help="Stereo baseline of disparity.")] = None
+    doffs_px: Annotated[float | None, typer.Option(help="Offset added to disparity.")] = None
+    objects: Annotated[
+        list[Path] | None, typer.Option("--object", help="Virtual object (glTF, OBJ, PLY).")
+    ] = None
+    illuminance_maps: Annotated[
+        list[Path] | None,
+        typer.Option("--illuminance-map", help="EXR: lux; PNG: false colours. May be repeated."),
+    ] = None
+    tone: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="From light to the screen: none (clips), reinhard (compresses) or another of the "
+            "scene file's display.tone.",
+        ),
+    ] = None
+    exposure: Annotated[
+        float | None,
+        typer.Option(help="Screen value (0…1, linear) per cd/m²; default: the photograph's own."),
+    ] = None
+    view: Annotated[str | None, typer.Option(help="left or right of a stereo rig.")] = None
+    time_seconds: Annotated[
+        float, typer.Option("--time", help="Moment of the session, seconds.")
+    ] = 0.0
+    engine: EngineOption = "auto"
+
+
+def takes(options: type[Any], /) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Gives a command that takes ``**typed`` the parameters of the dataclass `options`."""
+
+    def with_parameters(command: Callable[..., None]) -> Callable[..., None]:
+        types = get_type_hints(options, include_extras=True)
+        given = signature(options)
+        typed = [p.replace(annotation=types[name]) for name, p in given.parameters.items()]
+        # Typer's versions differ in which of the two they read.
+        command.__signature__ = given.replace(parameters=typed)  # type: ignore[attr-defined]
+        command.__annotations__ = types
+        return command
+
+    return with_parameters

@@ -8,10 +8,10 @@ import pytest
 from andon.errors import InputError
 from andon.lamps import resolve_lamps
 from andon.lamps.areas import MeshLamp, PolygonLamp
-from andon.lamps.coarse import triangle_areas
 from andon.lamps.edges import mesh_edges, polygon_edges, textured_edges
 from andon.lamps.form_factors import edge_factor, edges_factor, mesh_factor, polygon_factor
 from andon.lamps.shells.pairs import evened, flat_pairs
+from andon.lamps.triangles import triangle_areas
 from andon.scene import scene_from_dict
 from worlds import ball, block, unit, write_obj
 
@@ -144,6 +144,19 @@ def test_pairs_shine_alike_and_keep_their_flux():
     np.testing.assert_allclose(area @ even, area @ light)
     assert len(np.unique(even, axis=0)) == 6
     np.testing.assert_array_equal(evened(light, area, np.arange(12, dtype=np.int32)), light)
+
+
+def test_corners_that_differ_by_rounding_are_one_wherever_they_are():
+    """No grid splits what lies on both sides of its lines: 12 edges and 6 pairs at any place."""
+    box, rng = block((1, 1, 1), (0, 0, 0)), np.random.default_rng(6)
+    corners = box.positions[box.triangles]
+    for offset in [np.zeros(3), *rng.uniform(-20, 20, (10, 3))]:
+        moved = corners + offset + rng.uniform(-1e-7, 1e-7, corners.shape)
+        lamp = MeshLamp(
+            "m", GREY, moved.reshape(-1, 3), np.arange(36, dtype=np.int32).reshape(12, 3)
+        )
+        assert len(mesh_edges(lamp).a) == 12
+        assert len(np.unique(flat_pairs(moved))) == 6
 
 
 @pytest.mark.parametrize("two_sided", [False, True])

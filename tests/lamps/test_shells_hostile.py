@@ -5,11 +5,12 @@ import pytest
 
 from andon.errors import InputError
 from andon.lamps import PointLamp, Shell, expand
-from andon.lamps.coarse import coarse_corners, triangle_areas
+from andon.lamps.coarse import coarse_corners
 from andon.lamps.shells.cutting import cut_long, widest_edge
 from andon.lamps.shells.form import form_of
-from andon.lamps.shells.layer import clean_layer, rims, welded
+from andon.lamps.shells.layer import clean_layer, rims
 from andon.lamps.solids import icosphere
+from andon.lamps.triangles import triangle_areas, welded
 from andon.quantities import Geometry
 from lamps.shell_worlds import areas, box, lamp, moved, sent_lm, tube
 

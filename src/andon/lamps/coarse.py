@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.lamps.solids import quarters
+from andon.lamps.triangles import triangle_areas
 
-__all__ = ["coarse_corners", "triangle_areas"]
+__all__ = ["coarse_corners"]
 
 Float = NDArray[np.float64]
 
@@ -21,12 +22,6 @@ MOST_TIMES = 4
 # Edge collapse does not always get below its target.
 BUDGET_SLACK = 1.1
 FINEST_GRID = 24
-
-
-def triangle_areas(corners: Float, /) -> Float:
-    """Areas (n,) in m² of triangles (n, 3, 3)."""
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return np.linalg.norm(across, axis=1) / 2
 
 
 def coarse_corners(positions: Float, triangles: NDArray[Any], most: int, /) -> Float:

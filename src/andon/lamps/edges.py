@@ -36,6 +36,8 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.lamps.areas import MeshLamp, PolygonLamp
+from andon.lamps.polygons import vector_area
+from andon.lamps.triangles import WELD, shared_edges, triangle_areas, unit_normals, welded
 
 __all__ = ["TEXTURE_CELLS", "FacetEdges", "mesh_edges", "polygon_edges", "textured_edges"]
 
@@ -73,8 +75,7 @@ class FacetEdges:
 def polygon_edges(lamp: PolygonLamp, /) -> FacetEdges:
     """The outline (k edges) of a polygon without its texture; two-sided: a facet on either side."""
     a = np.asarray(lamp.vertices_m, np.float64)
-    arms = a - a.mean(axis=0)
-    normal = np.cross(arms, np.roll(arms, -1, axis=0)).sum(axis=0)
+    normal = vector_area(a)
     normal /= np.linalg.norm(normal)
     plane = np.tile([*normal, -normal @ a.mean(axis=0)], (len(a), 1))
     luminance = np.tile(np.asarray(lamp.luminance_cd_m2, np.float64), (len(a), 1))
@@ -85,19 +86,20 @@ def polygon_edges(lamp: PolygonLamp, /) -> FacetEdges:
 def mesh_edges(lamp: MeshLamp, /) -> FacetEdges:
     """All edges of a mesh that do not cancel, shared ones once.
 
-    Vertices at one place are one. Triangles without area are left out; edges with one facet, and
-    with more than two, are kept as often as it takes. Of facets with luminances of their own, only
-    those of one number in the lamp's `facet_groups` (m,) shine alike; without it, none do.
+    Vertices at one place (`WELD`) are one. Triangles without area are left out; edges with one
+    facet, and with more than two, are kept as often as it takes. Of facets with luminances of
+    their own, only those of one number in the lamp's `facet_groups` (m,) shine alike; without it,
+    none do.
     """
-    places, same = np.unique(np.asarray(lamp.positions_m, np.float64), axis=0, return_inverse=True)
-    triangles = same.reshape(-1)[np.asarray(lamp.triangles)]
-    corners = places[triangles]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    size = np.linalg.norm(normal, axis=1)
-    kept = size > 0
-    normal = normal[kept] / size[kept, None]
-    plane = np.c_[normal, -np.sum(normal * corners[kept, 0], axis=1)]
-    luminance, group = _shining(lamp, len(kept))
+    given = np.asarray(lamp.positions_m, np.float64)
+    close = WELD * float(np.ptp(given, axis=0).max())
+    places, same = welded(given, close)
+    triangles = same[np.asarray(lamp.triangles)]
+    luminance, group = _shining(lamp, len(triangles))
+    kept = triangle_areas(places[triangles]) > close**2
+    corners = places[triangles[kept]]
+    normal = unit_normals(corners)
+    plane = np.c_[normal, -np.sum(normal * corners[:, 0], axis=1)]
     return _paired(places, triangles[kept], plane, luminance[kept], group[kept])
 
 
@@ -119,41 +121,25 @@ def _paired(
     group: NDArray[np.integer[Any]],
 ) -> FacetEdges:
     """Every edge with the facets on its two sides; facet −1 is none."""
-    start, end = triangles.reshape(-1), np.roll(triangles, -1, axis=1).reshape(-1)
-    facet = np.repeat(np.arange(len(triangles)), 3)
-    forward = start < end
-    key = np.minimum(start, end) * len(places) + np.maximum(start, end)
-    turn = _turn(key, forward)
-    # The n-th facet on the left of an edge and the n-th on its right are neighbours.
-    slots, at = np.unique(np.c_[key, turn], axis=0, return_inverse=True)
-    sides = np.full((len(slots), 2), -1)
-    sides[at.reshape(-1), np.where(forward, 0, 1)] = facet
+    ends, sides = shared_edges(triangles)
     none = np.zeros((1, 4)), np.zeros((1, 3))
     planes, light = (
         np.concatenate([plane, none[0]])[sides],
         np.concatenate([luminance, none[1]])[sides],
     )
     shines = np.append(group, -1)[sides]
-    extent = float(np.abs(places - places.mean(axis=0)).max(initial=0.0))
-    shift = np.abs(planes[:, 0] - planes[:, 1]) / [1, 1, 1, max(extent, 1e-300)]
+    # Seen from the lamp's middle: from afar, planes of one face look apart.
+    middle = places.mean(axis=0)
+    extent = max(float(np.abs(places - middle).max()), 1e-300)
+    tilt = planes[:, 0] - planes[:, 1]
+    tilt[:, 3] = (tilt[:, :3] @ middle + tilt[:, 3]) / extent
+    shift = np.abs(tilt)
     seen = (shift.max(axis=1) > SAME_PLANE) | (shines[:, 0] != shines[:, 1])
-    low, high = np.divmod(slots[seen, 0], len(places))
+    low, high = ends[seen].T
     return FacetEdges(
         places[low], places[high],
         planes[seen, 0], planes[seen, 1], light[seen, 0], light[seen, 1],
     )  # fmt: skip
-
-
-def _turn(key: NDArray[np.intp], forward: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """How many facets came before on the same side of the same edge."""
-    both = 2 * key + forward
-    order = np.argsort(both, kind="stable")
-    ranked = both[order]
-    first = np.r_[True, ranked[1:] != ranked[:-1]]
-    begin = np.maximum.accumulate(np.where(first, np.arange(len(ranked)), 0))
-    turn = np.empty(len(both), np.intp)
-    turn[order] = np.arange(len(ranked)) - begin
-    return turn
 
 
 def textured_edges(

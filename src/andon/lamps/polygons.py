@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
+from andon.lamps.triangles import triangle_areas
 
-__all__ = ["check_flat", "polygon_triangles"]
+__all__ = ["check_flat", "polygon_triangles", "vector_area"]
 
 Float = NDArray[np.float64]
 
@@ -15,15 +16,21 @@ Float = NDArray[np.float64]
 FLATNESS = 1e-3
 
 
+def vector_area(loop: Float, /) -> Float:
+    """(3,) area of any surface that spans a loop (k, 3), along its mean normal, in m² (Newell)."""
+    relative = loop - loop.mean(axis=0)
+    return np.cross(relative, np.roll(relative, -1, axis=0)).sum(axis=0) / 2
+
+
 def check_flat(vertices: Float, /) -> float:
     """Area in m² of a polygon (k, 3). Raises `InputError` if it has none, or is not flat."""
     relative = vertices - vertices.mean(axis=0)
     size = float(np.linalg.norm(relative, axis=1).max())
-    double = np.cross(relative, np.roll(relative, -1, axis=0)).sum(axis=0)
-    area = float(np.linalg.norm(double)) / 2
+    along = vector_area(vertices)
+    area = float(np.linalg.norm(along))
     if not area > 1e-9 * size**2:
         raise InputError("has no area", field="vertices", remedy="give corners in order")
-    beside = float(np.abs(relative @ (double / (2 * area))).max())
+    beside = float(np.abs(relative @ (along / area)).max())
     if beside > FLATNESS * size:
         raise InputError(
             f"is not flat: a corner lies {beside:.3g} m beside its plane",
@@ -38,9 +45,9 @@ def polygon_triangles(vertices: Float, /) -> NDArray[np.int32]:
 
     Raises `InputError` for one that crosses itself.
     """
-    relative = vertices - vertices.mean(axis=0)
-    double = np.cross(relative, np.roll(relative, -1, axis=0)).sum(axis=0)
-    normal = double / max(float(np.linalg.norm(double)), np.finfo(float).tiny)
+    along = vector_area(vertices)
+    area = float(np.linalg.norm(along))
+    normal = along / max(area, np.finfo(float).tiny)
     left = list(range(len(vertices)))
     ears: list[tuple[int, int, int]] = []
     while len(left) > 3:
@@ -49,9 +56,7 @@ def polygon_triangles(vertices: Float, /) -> NDArray[np.int32]:
         del left[at]
     ears.append((left[0], left[1], left[2]))
     triangles = np.array(ears, np.int32)
-    a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    spanned = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
-    if not np.isclose(spanned, np.linalg.norm(double), rtol=1e-6):
+    if not np.isclose(triangle_areas(vertices[triangles]).sum(), area, rtol=1e-6):
         raise _crossing()
     return triangles
 

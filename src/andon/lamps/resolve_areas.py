@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.lamps.areas import DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.lamps.bodies import Body
-from andon.lamps.coarse import triangle_areas
 from andon.lamps.drawn import body_of
 from andon.lamps.kinds import AnyAreaLamp, Lamp
 from andon.lamps.model import PointLamp, Shadow
@@ -20,6 +19,7 @@ from andon.lamps.polygons import check_flat
 from andon.lamps.resources import lamp_emitters, lamp_texture, shell_of
 from andon.lamps.shells import expand
 from andon.lamps.tables import colour_of, unit
+from andon.lamps.triangles import triangle_areas
 
 if TYPE_CHECKING:
     from andon.scene import Scene

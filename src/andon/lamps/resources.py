@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.lamps.coarse import coarse_corners, triangle_areas
-from andon.lamps.shells.layer import WELD, welded
+from andon.lamps.coarse import coarse_corners
 from andon.lamps.shells.model import KEPT, Shell
+from andon.lamps.triangles import WELD, triangle_areas, welded
 from andon.quantities import Geometry, photometric
 
 if TYPE_CHECKING:

@@ -7,7 +7,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.lamps.triangles import triangle_areas
 from andon.quantities import Geometry
+from andon.spaces import perpendicular
 
 __all__ = ["capsule", "disk", "grid", "icosphere", "quarters"]
 
@@ -53,19 +55,11 @@ def icosphere(cuts: int, /) -> Geometry:
     return Geometry(unit, index.reshape(-1, 3).astype(np.int32), unit)
 
 
-def _frame(axis: Float) -> tuple[Float, Float]:
-    """Two unit vectors that make a right-handed frame with a unit `axis`."""
-    other = np.eye(3)[np.argmin(np.abs(axis))]
-    u = np.cross(other, axis)
-    u /= np.linalg.norm(u)
-    return u, np.cross(axis, u)
-
-
 def disk(centre: Float, normal: Float, radius_m: float, /, *, corners: int = 96) -> Geometry:
     """A disk of the area π·r² as a fan of `corners` triangles, flat."""
     # An inscribed polygon would be smaller than its circle.
     reach = radius_m * np.sqrt(2 * np.pi / corners / np.sin(2 * np.pi / corners))
-    u, v = _frame(normal)
+    u, v = perpendicular(normal)
     angle = 2 * np.pi * np.arange(corners)[:, None] / corners
     rim = centre + reach * (np.cos(angle) * u + np.sin(angle) * v)
     first = np.arange(corners)
@@ -101,7 +95,7 @@ def capsule(ends: Float, radius_m: float, /, *, around: int = 48, caps: int = 16
     """All points within `radius_m` of a line `ends` (2, 3); `caps` rings on each round end."""
     axis = ends[1] - ends[0]
     axis = axis / np.linalg.norm(axis)
-    u, v = _frame(axis)
+    u, v = perpendicular(axis)
     rise = np.linspace(-np.pi / 2, np.pi / 2, 2 * caps + 2)
     rise[: caps + 1] = np.linspace(-np.pi / 2, 0, caps + 1)
     rise[caps + 1 :] = np.linspace(0, np.pi / 2, caps + 1)
@@ -112,6 +106,5 @@ def capsule(ends: Float, radius_m: float, /, *, around: int = 48, caps: int = 16
     points = ends[end][:, None] + radius_m * normals
     triangles = _quads(around, 2 * caps + 1)
     flat = points.reshape(-1, 3)
-    a, b, c = (flat[triangles[:, k]] for k in range(3))
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    area = triangle_areas(flat[triangles])
     return Geometry(flat, triangles[area > 1e-12 * area.max()], normals.reshape(-1, 3))

@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from andon.lamps.triangles import area_vectors
+
 __all__ = ["Solid", "box", "facet_normals", "icosphere", "lathe", "panel", "torus", "wedge", "weld"]
 
 Float = NDArray[np.float64]
@@ -59,8 +61,7 @@ def _rotation(axis: int, degrees: float) -> Float:
 
 def facet_normals(positions: Float, triangles: Int, /) -> Float:
     """(m, 3) normals whose length is the triangle's area in m²."""
-    a, b, c = (positions[triangles[:, k]] for k in range(3))
-    return 0.5 * np.cross(b - a, c - a)
+    return area_vectors(positions[triangles])
 
 
 def weld(positions: Float, triangles: Int, /) -> tuple[Float, Int]:

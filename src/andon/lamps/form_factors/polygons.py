@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from andon.lamps.form_factors.vectors import Float, dot, quotient
+from andon.lamps.polygons import vector_area
 
 __all__ = ["edge_factor", "edges_factor", "horizon_reference", "mesh_factor", "polygon_factor"]
 
@@ -83,11 +84,10 @@ def polygon_factor(position: ArrayLike, normal: ArrayLike, vertices: ArrayLike, 
 def _flat_reference(corners: Float, place: Float, up: Float) -> tuple[Float, NDArray[np.bool_]]:
     """`towards` for a flat polygon, and whether the receiver is in front of it."""
     middle = corners.mean(axis=0)
-    arms = corners - middle
-    front = np.cross(arms, np.roll(arms, -1, axis=0)).sum(axis=0)
+    front = vector_area(corners)
     front /= np.linalg.norm(front)
     centre = middle - place
-    bound = float(np.linalg.norm(arms, axis=1).max())
+    bound = float(np.linalg.norm(corners - middle, axis=1).max())
     return horizon_reference(centre, bound, -front, up), centre @ front < 0
 
 

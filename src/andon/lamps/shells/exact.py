@@ -9,15 +9,16 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.lamps.coarse import triangle_areas
+from andon.lamps.polygons import vector_area
 from andon.lamps.shells.beams import Beam, beam_flux, solid_angles
 from andon.lamps.shells.factors import enclosure_factors
 from andon.lamps.shells.form import Form, form_of
 from andon.lamps.shells.inside import inside_illuminance, spread, vertex_normals
-from andon.lamps.shells.lids import fan, vector_area
+from andon.lamps.shells.lids import fan
 from andon.lamps.shells.model import KEPT, Shell
 from andon.lamps.shells.pairs import evened
 from andon.lamps.shells.radiosity import Balance, balance
+from andon.lamps.triangles import triangle_areas
 
 __all__ = ["Solution", "solve_shell"]
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps.solids import quarters
+from andon.lamps.triangles import triangle_areas, unit_normals
 
 __all__ = ["enclosure_factors", "point_factors"]
 
@@ -56,13 +57,6 @@ def _edge(a: Float, b: Float, normals: Float) -> Float:
     return np.divide(angle * facing, length, out=np.zeros_like(angle), where=length > 0)
 
 
-def _areas(corners: Float) -> tuple[Float, Float]:
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    double = np.linalg.norm(across, axis=1)
-    unit = np.divide(across, double[:, None], out=np.zeros_like(across), where=double[:, None] > 0)
-    return double / 2, unit
-
-
 def enclosure_factors(inside: Float, /, *, closed: bool) -> Float:
     """Shares F (n, n): of what leaves triangle i diffusely, F[i, j] goes to triangle j.
 
@@ -75,7 +69,7 @@ def enclosure_factors(inside: Float, /, *, closed: bool) -> Float:
     closed : the triangles leave no gap: rows sum to 1. Otherwise to at most 1, and what is
         missing leaves through the gaps.
     """
-    area, normal = _areas(inside)
+    area, normal = triangle_areas(inside), unit_normals(inside)
     pieces = inside
     for _ in range(CUTS):
         pieces = quarters(pieces)

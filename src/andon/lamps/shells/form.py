@@ -9,14 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.lamps.coarse import coarse_corners, triangle_areas
+from andon.lamps.coarse import coarse_corners
+from andon.lamps.polygons import vector_area
 from andon.lamps.shells.beams import solid_angles
 from andon.lamps.shells.cutting import cut_long, widest_edge
 from andon.lamps.shells.layer import FIELD, Layer, clean_layer, rims
-from andon.lamps.shells.lids import fan, flat_lid, vector_area
+from andon.lamps.shells.lids import fan, flat_lid
 from andon.lamps.shells.model import KEPT, Shell
 from andon.lamps.shells.pairs import flat_pairs
 from andon.lamps.solids import icosphere
+from andon.lamps.triangles import area_vectors, triangle_areas
 from andon.quantities import Geometry
 
 __all__ = ["Form", "form_of"]
@@ -106,8 +108,7 @@ def form_of(shell: Shell, /) -> Form:
 def _sphere(radius_m: float) -> Form:
     fine, coarse = icosphere(SPHERE_CUTS_DRAWN), icosphere(SPHERE_CUTS_LIGHT)
     corners = coarse.positions[coarse.triangles]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    flat = np.linalg.norm(across, axis=1).sum() / 2
+    flat = triangle_areas(corners).sum()
     facets = corners * radius_m * np.sqrt(4 * np.pi / flat)  # the area of the ball itself
     drawn = Geometry(fine.positions * radius_m, fine.triangles, fine.normals)
     whole = drawn.positions[drawn.triangles]
@@ -186,8 +187,9 @@ def _drawn(mesh: Geometry, layer: Layer) -> Geometry:
     normals = None if mesh.normals is None else mesh.normals[corners].copy()
     if normals is not None:
         # A file's normals may look in while its triangles look out: each joins its triangle.
-        across = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
-        normals *= np.where(np.einsum("tki,ti->tk", normals, across) < 0, -1, 1)[..., None]
+        normals *= np.where(np.einsum("tki,ti->tk", normals, area_vectors(at)) < 0, -1, 1)[
+            ..., None
+        ]
     both = at if normals is None else np.concatenate([at, normals], axis=2)
     both = cut_long(both, radians=DRAWN_RADIANS, most=MAX_DRAWN)
     at, normals = both[..., :3], None if normals is None else both[..., 3:]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps.shells.beams import Beam
+from andon.lamps.triangles import triangle_areas, unit_normals
 from andon.quantities import Geometry
 
 __all__ = ["inside_illuminance", "spread", "vertex_normals"]
@@ -19,11 +20,8 @@ def vertex_normals(geometry: Geometry, /) -> Float:
     """(n, 3) unit normals outwards; a flat-shaded body has three corners for each triangle."""
     if geometry.normals is not None:
         return geometry.normals
-    a, b, c = (geometry.positions[geometry.triangles[:, k]] for k in range(3))
-    across = np.cross(b - a, c - a)
-    unit = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-300)
     normals = np.empty_like(geometry.positions)
-    normals[geometry.triangles] = unit[:, None]
+    normals[geometry.triangles] = unit_normals(geometry.positions[geometry.triangles])[:, None]
     return normals
 
 
@@ -50,9 +48,7 @@ def spread(points: Float, normals: Float, facets: Float, values: Float, /) -> Fl
     if not values.any():
         return result
     middles = facets.mean(axis=1)
-    across = np.cross(facets[:, 1] - facets[:, 0], facets[:, 2] - facets[:, 0])
-    area = np.linalg.norm(across, axis=1) / 2
-    unit = across / (2 * area[:, None])
+    area, unit = triangle_areas(facets), unit_normals(facets)
     for first in range(0, len(points), CHUNK):
         part = slice(first, first + CHUNK)
         squared = (

@@ -9,17 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
+from andon.lamps.triangles import WELD, triangle_areas, welded
 
-__all__ = ["Layer", "clean_layer", "rims", "welded"]
+__all__ = ["Layer", "clean_layer", "rims"]
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int64]
 
-# Vertices closer than this share of the mesh's size are one.
-WELD = 1e-6
-# Grids in which neighbours are looked for. A pair that straddles a cell of one lies within a cell
-# of another; the fractions are arbitrary and unlike one another.
-GRID_OFFSETS = np.array([[0.137, 0.731, 0.419], [0.593, 0.211, 0.887], [0.859, 0.467, 0.043]])
 FIELD = "shell.mesh"
 
 
@@ -66,7 +62,7 @@ def clean_layer(positions: Float, triangles: NDArray[np.integer], /) -> Layer:  
     points, index = welded(np.asarray(positions, np.float64), WELD * size)
     wound = index[triangles]
     a, b, c = wound.T
-    area = np.linalg.norm(np.cross(points[b] - points[a], points[c] - points[a]), axis=1) / 2
+    area = triangle_areas(points[wound])
     keep = (a != b) & (b != c) & (c != a) & (area > (WELD * size) ** 2)
     # Models for engines without two-sided faces hold each triangle twice.
     _, first = np.unique(np.sort(wound, axis=1), axis=0, return_index=True)
@@ -79,25 +75,6 @@ def clean_layer(positions: Float, triangles: NDArray[np.integer], /) -> Layer:  
     part = _connected(len(wound), pairs)
     layer = Layer(points, wound, source, np.zeros(len(wound), np.bool_), part)
     return layer.turned(_turns(len(wound), pairs, same_way)) if same_way.any() else layer
-
-
-def welded(positions: Float, tolerance: float, /) -> tuple[Float, Int]:
-    """Distinct positions (k, 3) and the index (n,) of each given one among them."""
-    scale = 1 / max(2 * tolerance, np.finfo(float).tiny)
-    with np.errstate(over="ignore"):
-        cells = [np.floor(np.minimum(positions * scale, 2.0**52) + o) for o in GRID_OFFSETS]
-    groups = [np.unique(cell, axis=0, return_inverse=True)[1].ravel() for cell in cells]
-    label = np.arange(len(positions))
-    while True:
-        before = label
-        for group in groups:
-            lowest = np.full(group.max() + 1, len(positions))
-            np.minimum.at(lowest, group, label)
-            label = lowest[group]
-        if (label == before).all():
-            break
-    kept, index = np.unique(label, return_inverse=True)
-    return positions[kept], index.ravel()
 
 
 def _edges(triangles: Int) -> tuple[Int, Int]:

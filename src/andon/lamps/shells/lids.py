@@ -5,18 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["fan", "flat_lid", "vector_area"]
+from andon.lamps.polygons import vector_area
+
+__all__ = ["fan", "flat_lid"]
 
 Float = NDArray[np.float64]
 
 # Corners of a lid: a circle as so many corners is a circle within 1.2 % of its radius.
 MAX_CORNERS = 20
-
-
-def vector_area(loop: Float, /) -> Float:
-    """(3,) area of any surface that spans a loop (k, 3), along its mean normal, in m² (Newell)."""
-    relative = loop - loop.mean(axis=0)
-    return np.cross(relative, np.roll(relative, -1, axis=0)).sum(axis=0) / 2
 
 
 def fan(loop: Float, /) -> Float:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.lamps.triangles import shared_edges, unit_normals, welded
+
 __all__ = ["evened", "flat_pairs"]
 
 Float = NDArray[np.float64]
@@ -40,20 +42,13 @@ def evened(luminance: Float, area: Float, number: NDArray[np.int32], /) -> Float
 
 def _neighbours(corners: Float) -> list[tuple[int, int]]:
     """Pairs of coplanar facets with a common edge, the longest edge first."""
-    size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
-    grid = np.rint(corners.reshape(-1, 3) / (SAME_CORNER * size))
-    ids = np.unique(grid, axis=0, return_inverse=True)[1].reshape(-1, 3)
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normal = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-300)
-    start, end = ids.ravel(), np.roll(ids, -1, axis=1).ravel()
-    length = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).ravel()
-    owner = {(a, b): i for i, (a, b) in enumerate(zip(start.tolist(), end.tolist(), strict=True))}
-    found: list[tuple[float, int, int]] = []
-    for (a, b), here in owner.items():
-        there = owner.get((b, a))
-        if there is None or a > b:
-            continue
-        first, second = here // 3, there // 3
-        if normal[first] @ normal[second] > 1 - SAME_PLANE:
-            found.append((-float(length[here]), first, second))
-    return [(first, second) for _, first, second in sorted(found)]
+    points = corners.reshape(-1, 3)
+    places, index = welded(points, SAME_CORNER * float(np.ptp(points, axis=0).max()))
+    ends, sides = shared_edges(index.reshape(-1, 3))
+    first, second = sides.min(axis=1), sides.max(axis=1)
+    normal = unit_normals(corners)
+    flat = np.einsum("ei,ei->e", normal[first], normal[second]) > 1 - SAME_PLANE
+    length = np.linalg.norm(places[ends[:, 0]] - places[ends[:, 1]], axis=1)
+    at = np.flatnonzero((first >= 0) & (first < second) & flat)
+    order = np.lexsort((second[at], first[at], -length[at]))
+    return [(int(a), int(b)) for a, b in np.stack([first, second], axis=1)[at[order]]]

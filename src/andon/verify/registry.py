@@ -47,7 +47,15 @@ class Row:
 
 def rows() -> tuple[Row, ...]:
     """All rows, stage by stage."""
-    from andon.verify.rows import area_scene, areas, penumbra, photometry, relight, synthetic
+    from andon.verify.rows import (
+        area_scene,
+        areas,
+        lampshade,
+        penumbra,
+        photometry,
+        relight,
+        synthetic,
+    )
 
     return (
         *relight.ROWS,
@@ -55,5 +63,6 @@ def rows() -> tuple[Row, ...]:
         *area_scene.ROWS,
         *penumbra.ROWS,
         *synthetic.ROWS,
+        *lampshade.ROWS,
         *photometry.ROWS,
     )

@@ -52,6 +52,7 @@ __all__ = [
     "Timing",
     "irradiance",
     "package_folder",
+    "run_radiance",
     "time_picture",
     "time_view",
 ]
@@ -133,7 +134,7 @@ class RadianceScene:
         )
         scene = folder / "scene.rad"
         scene.write_text(text, encoding="ascii")
-        octree = _run("oconv", ["-w", str(scene)], b"", self._limit)
+        octree = run_radiance("oconv", ["-w", str(scene)], b"", self._limit)
         (folder / "scene.oct").write_bytes(octree)
 
     def irradiance(
@@ -196,7 +197,9 @@ class RadianceScene:
         fixed = ["-h", "-w", "-fd", "-dt", "0", "-dc", "1", "-dj", "0", "-dr", "0"]
         chosen = [word for key, value in options.items() for word in (f"-{key}", str(value))]
         octree = str(Path(self._folder.name) / "scene.oct")
-        answer = _run("rtrace", [*mode, *fixed, *chosen, octree], rays.tobytes(), self._limit)
+        answer = run_radiance(
+            "rtrace", [*mode, *fixed, *chosen, octree], rays.tobytes(), self._limit
+        )
         watts = np.frombuffer(answer, np.float64)
         if watts.size != 3 * len(rays):
             raise MachineError(
@@ -298,7 +301,11 @@ def _geometry_text(geometry: Geometry) -> str:
     return text
 
 
-def _run(program: str, arguments: list[str], feed: bytes, limit: float) -> bytes:
+def run_radiance(program: str, arguments: list[str], feed: bytes, limit: float) -> bytes:
+    """What one of Radiance's programs answers to `feed`.
+
+    Raises `MachineError` if it is missing, fails or takes more than `limit` seconds.
+    """
     folder = package_folder()
     path = shutil.which(program, path=str(folder / "bin"))
     if path is None:

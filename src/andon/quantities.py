@@ -146,6 +146,8 @@ class Surface:
     emitted_cd_m2 : (H, W, 3) float64, what the surface emits by itself.
     view : where the pixels look.
     body_id : (H, W) int32, which of the luminous bodies is seen, −1 elsewhere; None: nowhere.
+    cover : (H, W) depth of what a small hole is taken to hide, of its farther rim; inf elsewhere.
+        Virtual things behind it are not drawn; light is not added. None: holes hide nothing.
     """
 
     position: NDArray[np.float64]
@@ -158,6 +160,7 @@ class Surface:
     emitted_cd_m2: NDArray[np.float64]
     view: View
     body_id: NDArray[np.int32] | None = None
+    cover: NDArray[np.float64] | None = None
 
     @property
     def holes(self) -> int:

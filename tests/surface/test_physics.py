@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from andon.composite.reference import draw_lamps
 from andon.errors import InputError
+from andon.lamps import PointLamp
 from andon.quantities import Geometry, Material
 from andon.rays import face_normals
 from andon.spaces import View, look_at, rotate
@@ -376,3 +378,23 @@ def test_blocks_of_these_tests_face_outwards():
     for geometry, sign in ((ROOM, 1), (block((4, 3, 5), (0, 0, 0), inwards=True), -1)):
         middle = geometry.positions[geometry.triangles].mean(axis=1)
         assert (np.einsum("ij,ij->i", face_normals(geometry), middle) * sign > 0).all()
+
+
+def test_small_holes_hide_what_is_behind_both_their_rims():
+    """A slit in a near surface is closed, the open side of a silhouette is not."""
+    from andon.surface.reference import from_depth
+
+    view = View("pinhole", 40, 30, 30.0, 30.0, 19.5, 14.5)
+    depth = np.full((30, 40), np.nan)
+    depth[:, :20] = 1.0  # a near thing; to its right the sky
+    depth[10:20, 5:9] = np.nan  # a slit in it
+    depth[3, 12] = 5.0  # and a far speck
+    surface = from_depth(depth, np.broadcast_to([0.0, 0, 1], (30, 40, 3)), view)
+    assert (surface.cover[10:20, 5:9] == 1.0).all()
+    assert np.isinf(surface.cover[:, 20:]).all()
+    assert np.isinf(surface.cover[surface.valid]).all()
+    places = {"behind": np.array([-0.9, 0, -2.0]), "sky": np.array([0.6, 0, -2.0])}
+    lamps = [PointLamp(k, at, np.ones(3), visible_radius_m=0.2) for k, at in places.items()]
+    picture = draw_lamps(np.zeros((30, 40, 3)), surface, lamps)
+    assert not picture[:, :20].any()
+    assert picture[:, 20:].any()

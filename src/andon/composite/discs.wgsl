@@ -16,7 +16,9 @@ struct DiscPictures {
 @fragment fn lamp_disc(@builtin(position) pixel: vec4f) -> DiscPictures {
   let packed = textureLoad(gbuffer, vec2i(pixel.xy), 0);
   let ray = ray_planar(pixel.xy);
-  let surface_m = select(1e30, bitcast<f32>(packed.x) * length(ray), (packed.w & VALID) != 0u);
+  // Of a hole: where its cover is.
+  let held = bitcast<f32>(packed.x);
+  let surface_m = select(1e30, held * length(ray), held > 0.0);
   let direction = normalize(world_ray(pixel.xy));
   let angle = 2.0 * asin(clamp(0.5 * length(direction - disc.direction), 0.0, 1.0));
   // Angle of a pixel, from its neighbour: the square root of its solid angle for square pixels.

@@ -113,7 +113,7 @@ def drawn_lamps(lamps: Sequence[Lamp], eye: Float, /) -> list[Disc]:
 def draw_lamps(luminance: Float, surface: Surface, lamps: Sequence[Lamp], /) -> Float:
     """The picture with visible lamps in it: discs, hidden by whatever is nearer.
 
-    A hole hides nothing. The rim is blended over one pixel's angle.
+    A hole hides what is behind its cover. The rim is blended over one pixel's angle.
     """
     view = surface.view
     discs = drawn_lamps(lamps, view.position)
@@ -138,6 +138,10 @@ def _angle_between(directions: Float, axis: Float) -> Float:
 
 
 def _distance(surface: Surface, view: View) -> Float:
-    """(H, W) distance of the surface from the camera, inf in holes."""
+    """(H, W) distance of the surface from the camera; in holes that of their cover, or inf."""
     distance = np.linalg.norm(surface.position - view.position, axis=-1)
-    return np.where(surface.valid & np.isfinite(distance), distance, np.inf)
+    known = surface.valid & np.isfinite(distance)
+    if surface.cover is None:
+        return np.where(known, distance, np.inf)
+    along = np.linalg.norm(view.rays_planar(), axis=-1)
+    return np.where(known, distance, np.where(surface.valid, np.inf, surface.cover * along))

@@ -98,7 +98,9 @@ def projection_variant(view: View, /) -> dict[str, str]:
 def pack_surface(surface: Surface, /) -> NDArray[np.uint32]:
     """(H, W, 4) uint32: depth bits, octahedral normal, reflectance, flags (see gbuffer.wgsl)."""
     packed = np.zeros((*surface.view.shape, 4), np.uint32)
-    depth = np.where(surface.valid, surface.depth, 1.0)
+    # Of holes: how near their cover is, 0 for none.
+    cover = np.inf if surface.cover is None else surface.cover
+    depth = np.where(surface.valid, surface.depth, np.where(np.isfinite(cover), cover, 0.0))
     packed[..., 0] = depth.astype(np.float32).view(np.uint32)
     packed[..., 1] = _octahedral(np.where(surface.valid[..., None], surface.normal, (0, 0, 1.0)))
     root = np.sqrt(np.clip(surface.reflectance, 0, 1))

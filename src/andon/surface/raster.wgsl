@@ -66,6 +66,8 @@ struct Background {
 
 @fragment fn background(@builtin(position) pixel: vec4f) -> Background {
   let packed = textureLoad(base, vec2i(pixel.xy), 0);
-  let depth = select(0.0, view.near_m / bitcast<f32>(packed.x), (packed.w & VALID) != 0u);
+  // Holes may have a cover, behind which nothing is drawn.
+  let held = bitcast<f32>(packed.x);
+  let depth = select(0.0, view.near_m / held, held > 0.0);
   return Background(packed, depth);
 }

@@ -98,14 +98,40 @@ def from_depth(depth: Float, normal: Float, view: View, /) -> Surface:
         material_id=np.full(view.shape, -1, np.int32),
         emitted_cd_m2=np.zeros((*view.shape, 3)),
         view=view,
+        cover=_cover(np.where(valid, depth, np.inf)),
     )
+
+
+# A hole is a gap in the depth, not in the world: what lies behind both its rims stays behind. Gaps
+# with a rim on one side only within this many pixels (the sky beside a tree) are left open.
+COVER_PX = 8
+
+
+def _cover(depth: Float) -> Float:
+    """(H, W) depth behind which a hole hides things, inf where it does not; holes are inf.
+
+    Of the two rims to its left and right, or above and below, the farther; of these the nearer.
+    """
+    pairs = [np.maximum(_rim(depth, axis, 1), _rim(depth, axis, -1)) for axis in (0, 1)]
+    return np.where(np.isfinite(depth), np.inf, np.minimum(*pairs))
+
+
+def _rim(depth: Float, axis: int, way: int) -> Float:
+    """(H, W) depth of the first surface met along an axis within `COVER_PX`, or inf."""
+    found = np.full(depth.shape, np.inf)
+    for step in range(1, min(COVER_PX, depth.shape[axis] - 1) + 1):
+        there = np.roll(depth, -way * step, axis)
+        beyond = slice(-step, None) if way > 0 else slice(None, step)
+        there[(beyond, slice(None)) if axis == 0 else (slice(None), beyond)] = np.inf
+        found = np.where(np.isinf(found), there, found)
+    return found
 
 
 def from_normals(normal: Float, view: View, /) -> Surface:
     """A normals-only surface: valid where the normal (H, W, 3) is, positions unknown."""
     surface = from_depth(np.ones(view.shape), normal, view)
     unknown = np.full((*view.shape, 3), np.nan)
-    return replace(surface, position=unknown)
+    return replace(surface, position=unknown, cover=None)
 
 
 def trace(geometry: Geometry, view: View, /, *, is_object: bool) -> Surface:
@@ -186,9 +212,10 @@ def _textures(materials: tuple[Material, ...], chosen: NDArray[Any], uv: Float) 
 
 
 def nearest(real: Surface, objects: Surface, /) -> Surface:
-    """Pixel by pixel, whichever is nearer; objects stand in front of holes."""
+    """Pixel by pixel, whichever is nearer; objects stand before holes without a nearer cover."""
     with np.errstate(invalid="ignore"):
-        front = objects.valid & (~real.valid | (objects.depth < real.depth))
+        there = real.depth if real.cover is None else np.where(real.valid, real.depth, real.cover)
+        front = objects.valid & (~np.isfinite(there) | (objects.depth < there))
 
     def choose(name: str) -> NDArray[Any]:
         behind: NDArray[Any] = getattr(real, name)
@@ -208,5 +235,6 @@ def nearest(real: Surface, objects: Surface, /) -> Surface:
         material_id=choose("material_id"),
         emitted_cd_m2=choose("emitted_cd_m2"),
         view=real.view,
+        cover=real.cover,
         body_id=None if all(body is None for body in bodies) else np.where(front, before, behind),
     )

@@ -114,3 +114,11 @@ def test_a_table_without_preset_is_left_alone():
 def test_nonsense_is_refused_by_the_scene(lamps):
     with pytest.raises(InputError, match="lamp"):
         scene_from_dict({"lamp": lamps})
+
+
+def test_a_window_is_an_even_overcast_sky_behind_double_glazing():
+    table = {"preset": "window", "position": (0, 1, -2), "direction": (1, 0, 0)}
+    (lamp,) = scene_from_dict({"lamp": [table]}).lamp
+    assert (lamp.kind, lamp.drawn, lamp.two_sided) == ("rectangle", False, False)
+    sky = PRESETS["overcast-sky"].keys["illuminance_lux"]
+    assert lamp.luminance_cd_m2 == pytest.approx(0.8 * sky / np.pi, rel=0.02)

@@ -109,3 +109,16 @@ def test_numbers_with_a_unit_say_so_in_the_name():
             for word, end in (("in lx", "_lux"), ("in cd.", "_cd"), ("in lm", "_lm")):
                 if word in description and "E0" not in description:
                     assert name.endswith(end), f"{table.__name__}.{name}"
+
+
+def test_the_manual_warns_of_what_surprises():
+    text = " ".join(scene_reference_markdown().split())
+    for words in (
+        "facets do not hide one another",
+        "reduced to about 64 triangles",
+        "its back is black unless two_sided",
+        "64 by 3 % at four times as many shadow maps",
+        "virtual things take away what they hide of it",
+        "`--view` names",
+    ):
+        assert words in text, words

@@ -48,11 +48,14 @@ class Ambient(Table):
     )
     source: tuple[AnyLamp, ...] = Field(
         default=(),
-        description="[[ambient.source]]: real lamps and windows that are part of E0, as [[lamp]].",
+        description="[[ambient.source]]: real lamps and windows that are part of E0, as [[lamp]]: "
+        "virtual things take away what they hide of it. Where there are such, each costs two of "
+        "the 64 lamps.",
     )
     removed: tuple[Name, ...] = Field(
         default=(),
-        description="Names of sources that are switched off in the result.",
+        description="Names of sources that are switched off in the result: their light is taken "
+        "out of E0, with its shadows among the real things. Such a source costs one lamp.",
     )
 
     @model_validator(mode="after")

@@ -116,7 +116,8 @@ class _Area(LampTable, Shadowing):
     )
     drawn: bool = Field(
         default=True,
-        description="The area is seen in the picture, and casts shadows.",
+        description="The area is seen in the picture, and casts shadows; its back is black unless "
+        "two_sided.",
     )
     shadow_map_size: ShadowMapSize = Field(
         default=512,
@@ -125,7 +126,8 @@ class _Area(LampTable, Shadowing):
     shadow_samples: Annotated[int, Field(ge=1, le=64)] = Field(
         default=16,
         description="Points on the area from which its shadow is looked at, 1…64; the penumbra is "
-        "their mean.",
+        "their mean. 16 err by about 4 % of the light (RMS), 64 by 3 % at four times as many "
+        "shadow maps.",
     )
 
 
@@ -208,7 +210,10 @@ class PolygonTable(_Area):
 
 
 class MeshTable(_Area):
-    """A lamp of any form."""
+    """A lamp of any form. Its facets do not hide one another, which is exact for convex forms.
+
+    For its light the mesh is reduced to about 64 triangles; it is drawn as it is.
+    """
 
     kind: Literal["mesh"] = Field(description="Kind of lamp.")
     position: Vector = Field(

@@ -126,6 +126,21 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
             width_m=0.531,
             height_m=0.299,
         ),
+        # An overcast sky of 10 klx has 10 klx/π = 3200 cd/m² where it is even; double glazing lets
+        # 0.8 of that through. Not drawn, since its glass shows the world outside, and lit to one
+        # side: it stands in a wall of the photograph, or before it. Its normal points inwards.
+        "window": _preset(
+            "a window under an overcast sky, 1.2 × 1.4 m",
+            "10 klx/π through double glazing (0.8): 2500 cd/m²; D65",
+            kind="rectangle",
+            luminance_cd_m2=2500.0,
+            temperature_k=6504.0,
+            daylight=True,
+            width_m=1.2,
+            height_m=1.4,
+            drawn=False,
+            two_sided=False,
+        ),
         # Full moon high in a clear sky; warmer than the sun because the Moon is.
         "moon": _preset(
             "the full moon, high in a clear sky",

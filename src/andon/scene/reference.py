@@ -94,6 +94,30 @@ source = { left = "left.png", right = "right.png" }
 `andon relight left.png --scene stereo.toml --view left -o left-lit.png`: the photograph that is
 given is that of the eye that `--view` names (left, unless named); the other eye keeps its own.
 """,
+    "ambient.source": """\
+A real lamp or window whose light is in the photograph, described as a `[[lamp]]` is. It adds
+nothing by itself: virtual objects and luminous bodies take away what they hide of it, so they cast
+shadows in the light of the room. `removed` switches it off: its light is taken out of E0.
+
+```toml
+[ambient]
+illuminance_lux = 300.0
+removed = ["ceiling"]
+
+[[ambient.source]]
+preset = "window"
+name = "window"
+position = [-1.8, 1.4, -2.0]
+direction = [1.0, 0.0, 0.0]
+
+[[ambient.source]]
+preset = "bulb"
+name = "ceiling"
+position = [0.0, 2.3, -1.5]
+```
+
+A source that stays costs two of the 64 lamps that a scene may have, one that is removed costs one.
+""",
 }
 
 
@@ -136,6 +160,8 @@ def _sections(path: str, info: FieldInfo, seen: list[type[Table]]) -> Iterator[s
     if any(issubclass(table, LampTable) for table in tables):
         if path == "lamp":
             yield from _lamp_sections()
+        elif path in EXAMPLES:
+            yield f"## `[[{path}]]`\n\n{EXAMPLES[path]}"
         return
     for table in tables:
         if table in seen:

@@ -312,6 +312,24 @@ def test_a_box_is_its_faces_with_weights():
     np.testing.assert_allclose(single, truth[:, 0], atol=1e-12)
 
 
+@pytest.mark.parametrize("coloured", [False, True])
+def test_a_mesh_is_its_triangles_wherever_one_stands(coloured):
+    """Below, above, inside and far beside it, where whole edges cancel and where none may."""
+    rng = np.random.default_rng(8)
+    solid = icosphere(0.5, 3)
+    middle = solid.positions[solid.triangles].mean(axis=1)
+    open_above = solid.triangles[middle[:, 1] < 0.2]
+    light = rng.uniform(0, 5, (len(open_above), 3)) if coloured else np.ones((len(open_above), 3))
+    reach = 10.0 ** rng.uniform(-1, 2, (400, 1))
+    place, normal = reach * unit(rng.normal(size=(400, 3))), unit(rng.normal(size=(400, 3)))
+    normal[:100] = UP
+    faces = [polygon_factor(place, normal, solid.positions[one]) for one in open_above]
+    truth = np.stack(faces, axis=1) @ light
+    got = mesh_factor(place, normal, solid.positions, open_above, light)
+    np.testing.assert_allclose(got, truth, rtol=1e-6, atol=1e-12)
+    assert (truth[:, 0] > 0).mean() > 0.3
+
+
 # ── edges and hostile places ────────────────────────────────────────────────────────────────────
 
 

@@ -30,9 +30,11 @@ if TYPE_CHECKING:
         RectangleTable,
         SphereTable,
         TubeTable,
-        _Area,  # pyright: ignore[reportPrivateUsage]
     )
     from andon.scene.lamp_parts import Shell as ShellTable
+
+    FlatTable = DiskTable | RectangleTable | PolygonTable
+    AreaTable = FlatTable | SphereTable | TubeTable | MeshTable
 
 __all__ = ["AREA_KINDS", "area_body", "area_lamp", "in_shell"]
 
@@ -81,14 +83,14 @@ def _placed(error: InputError, scene: Scene, place: str) -> InputError:
     return InputError(error.rule, file=scene.file, field=field, remedy=error.remedy)
 
 
-def _shadow(table: _Area) -> Shadow | None:
+def _shadow(table: AreaTable) -> Shadow | None:
     if not table.shadow:
         return None
     kind = "linear" if table.shadow_filter == "exact" else table.shadow_filter
     return Shadow(table.shadow_map_size, kind, table.shadow_samples, frozenset({table.name}))
 
 
-def _luminance(table: _Area, *, projected_m2: float, emitting_m2: float) -> Float:
+def _luminance(table: AreaTable, *, projected_m2: float, emitting_m2: float) -> Float:
     """(3,) cd/m²: I = L·A projected along the stated direction, Φ = π·L·A of all that emits."""
     if table.luminance_cd_m2 is not None:
         value = table.luminance_cd_m2
@@ -99,7 +101,7 @@ def _luminance(table: _Area, *, projected_m2: float, emitting_m2: float) -> Floa
     return value * colour_of(table)
 
 
-def _flat(table: DiskTable | RectangleTable | PolygonTable, area: float) -> Float:
+def _flat(table: FlatTable, area: float) -> Float:
     sides = 2 if table.two_sided else 1
     return _luminance(table, projected_m2=area, emitting_m2=sides * area)
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
+from andon.files.cached import file_stamp, read_cached
 from andon.lamps.coarse import coarse_corners
 from andon.lamps.shells.model import KEPT, Shell
 from andon.lamps.triangles import WELD, triangle_areas, welded
@@ -54,7 +55,7 @@ class _Source(NamedTuple):
     """A mesh file as it is now, and how its numbers become metres with +Y up."""
 
     path: str
-    stamp: tuple[int, int]
+    stamp: tuple[int, int] | None
     scale: float
     z_up: bool
 
@@ -63,7 +64,7 @@ def _source(scene: Scene, reference: str, field: str) -> _Source:
     path = scene.path(reference, field)
     unitless = path.suffix.lower() in UNITLESS_SUFFIXES
     scale = scene.scene.metres_per_unit if unitless else 1.0
-    return _Source(str(path), _stamp(path), scale, unitless and scene.scene.up != "y")
+    return _Source(str(path), file_stamp(path), scale, unitless and scene.scene.up != "y")
 
 
 def lamp_emitters(scene: Scene, reference: str, field: str, /) -> Emitters:
@@ -83,16 +84,7 @@ def lamp_texture(scene: Scene, reference: str, field: str, /) -> Float:
     Raises `InputError` for a black picture.
     """
     path = scene.path(reference, field)
-    return _texture(str(path), _stamp(path))
-
-
-def _stamp(path: Path) -> tuple[int, int]:
-    """What changes when a file does; a missing one is left for its reader to refuse."""
-    try:
-        status = path.stat()
-    except OSError:
-        return 0, 0
-    return status.st_mtime_ns, status.st_size
+    return read_cached(_texture, path)
 
 
 @lru_cache(maxsize=KEPT)
@@ -130,8 +122,7 @@ def _shell(
     return Shell(radius_m, mesh, np.array(transmittance), absorptance, mode)
 
 
-@lru_cache(maxsize=KEPT)
-def _texture(path: str, stamp: tuple[int, int]) -> Float:
+def _texture(path: Path) -> Float:
     from andon.files.pictures import read_picture
     from andon.responses import srgb_decode
 

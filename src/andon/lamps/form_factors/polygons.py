@@ -16,15 +16,18 @@ and rounding with them, and the second otherwise.
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from andon.lamps.form_factors.vectors import Float, dot, quotient
 from andon.lamps.polygons import vector_area
+from andon.lamps.triangles import area_vectors, shared_edges
 
 __all__ = ["edge_factor", "edges_factor", "horizon_reference", "mesh_factor", "polygon_factor"]
 
-# Pairs of receiver and triangle that are worked on at once: about 200 MB of temporaries.
+# Pairs of receiver and edge that are worked on at once: at most about 200 MB of temporaries.
 PAIRS = 1 << 18
 
 
@@ -95,48 +98,102 @@ def mesh_factor(
     position: ArrayLike,
     normal: ArrayLike,
     positions: ArrayLike,
-    triangles: NDArray[np.integer],
+    triangles: NDArray[np.integer[Any]],
     facet_weights: ArrayLike | None = None,
     /,
 ) -> Float:
     """Sum of the factors of the triangles that face the receiver, in sr.
 
-    (...) without weights or with `facet_weights` (m,), (..., 3) with (m, 3). Triangles run
-    counter-clockwise outside and do not hide one another: exact for convex meshes.
+    (...) without weights or with `facet_weights` (m,), (..., 3) with (m, 3), all ≥ 0. Triangles
+    run counter-clockwise outside and do not hide one another: exact for convex meshes.
     """
-    corners = np.asarray(positions, np.float64)[np.asarray(triangles)]
     place, up = np.broadcast_arrays(
         np.asarray(position, np.float64), np.asarray(normal, np.float64)
     )
-    weights = np.ones(len(corners)) if facet_weights is None else np.asarray(facet_weights)
-    columns = weights.reshape(len(corners), -1)
-    total = np.empty((place.size // 3, columns.shape[1]))
+    count = len(triangles)
+    weights = np.ones(count) if facet_weights is None else np.asarray(facet_weights)
+    mesh = _Mesh.of(np.asarray(positions, np.float64)[triangles], weights.reshape(count, -1))
     points, normals = place.reshape(-1, 3), up.reshape(-1, 3)
-    step = max(1, PAIRS // max(len(corners), 1))
-    for start in range(0, len(points), step):
-        part = slice(start, start + step)
-        total[part] = _facets(points[part], normals[part], corners, columns)
+    total = np.empty((len(points), mesh.weights.shape[1]))
+    flat = np.cross(normals, mesh.middle - points)
+    beside = dot(flat, flat) > mesh.bound**2
+    for who, factor in ((beside, mesh.by_edges), (~beside, mesh.by_facets)):
+        which = np.flatnonzero(who)
+        step = max(1, PAIRS // max(len(mesh.ends), 1))
+        for start in range(0, len(which), step):
+            part = which[start : start + step]
+            total[part] = factor(points[part], normals[part])
     return total.reshape(*place.shape[:-1], *weights.shape[1:])
 
 
-def _facets(points: Float, normals: Float, corners: Float, columns: Float) -> Float:
-    """(n, c) sums over the facets that face each of `points` (n, 3) and rise above its horizon."""
-    outward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    offset = dot(outward, corners[:, 0])
-    highest = (normals @ corners.reshape(-1, 3).T).reshape(len(points), -1, 3).max(axis=2)
-    seen = (points @ outward.T > offset) & (highest > dot(points, normals)[:, None])
-    who, which = np.nonzero(seen)
-    seen_corners = corners[which] - points[who, None]
-    up, middle = normals[who], seen_corners.mean(axis=1)
-    bound = np.linalg.norm(seen_corners - middle[:, None], axis=2).max(axis=1)
-    towards = horizon_reference(middle, bound, -outward[which], up)
-    factor = np.zeros(len(who))
-    for k in range(3):
-        factor += edge_factor(seen_corners[:, k], seen_corners[:, k - 2], up, towards)
-    factor = np.maximum(factor, 0)
-    sums = np.zeros((len(points), columns.shape[1]))
-    np.add.at(sums, who, factor[:, None] * columns[which])
-    return sums
+class _Mesh(NamedTuple):
+    """A mesh with its edges, each with the facets along it and against it; −1: none, the last."""
+
+    corners: Float
+    weights: Float
+    outward: Float
+    places: Float
+    ends: NDArray[np.int64]
+    sides: NDArray[np.int64]
+    middle: Float
+    bound: float
+
+    @staticmethod
+    def of(corners: Float, weights: Float) -> _Mesh:
+        """`corners` (m, 3, 3), `weights` (m, c)."""
+        places, index = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+        middle = places.mean(axis=0)
+        bound = float(np.linalg.norm(places - middle, axis=1).max())
+        edges = shared_edges(index.reshape(-1, 3))
+        return _Mesh(corners, weights, area_vectors(corners), places, *edges, middle, bound)
+
+    def facing(self, points: Float) -> NDArray[np.bool_]:
+        """(n, m) whether the outsides of the facets face `points` (n, 3)."""
+        return points @ self.outward.T > dot(self.outward, self.corners[:, 0])
+
+    def by_edges(self, points: Float, normals: Float) -> Float:
+        """(n, c) for receivers beside the mesh: all facets have one `towards`.
+
+        Edges between facets of one weight that both face the receiver cancel: of a convex mesh
+        its outline is left.
+        """
+        front = np.pad(self.facing(points), ((0, 0), (0, 1)))
+        weights = np.pad(self.weights, ((0, 1), (0, 0)))
+        left, right = front[:, self.sides[:, 0]], front[:, self.sides[:, 1]]
+        differ = (weights[self.sides[:, 0]] != weights[self.sides[:, 1]]).any(axis=1)
+        height = normals @ self.places.T - dot(points, normals)[:, None]
+        # Who is above is decided by `edge_factor`, for both edges at a vertex alike.
+        above = height > -1e-9 * (np.abs(self.places).max() + np.abs(points).max())
+        seen = (left != right) | (left & right & differ)
+        seen &= above[:, self.ends[:, 0]] | above[:, self.ends[:, 1]]
+        who, which = np.nonzero(seen)
+        place = points[who]
+        a, b = (self.places[self.ends[which, k]] - place for k in range(2))
+        factor = edge_factor(a, b, normals[who], self.middle - place)
+        share = left[who, which, None] * weights[self.sides[which, 0]]
+        share -= right[who, which, None] * weights[self.sides[which, 1]]
+        return np.maximum(_summed(who, factor[:, None] * share, len(points)), 0)
+
+    def by_facets(self, points: Float, normals: Float) -> Float:
+        """(n, c) for any receivers: each facet has a `towards` of its own."""
+        heights = (normals @ self.corners.reshape(-1, 3).T).reshape(len(points), -1, 3)
+        above = heights.max(axis=2) > dot(points, normals)[:, None]
+        who, which = np.nonzero(self.facing(points) & above)
+        corners = self.corners[which] - points[who, None]
+        up, middle = normals[who], corners.mean(axis=1)
+        bound = np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
+        towards = horizon_reference(middle, bound, -self.outward[which], up)
+        factor = np.zeros(len(who))
+        for k in range(3):
+            factor += edge_factor(corners[:, k], corners[:, k - 2], up, towards)
+        shares = np.maximum(factor, 0)[:, None] * self.weights[which]
+        return _summed(who, shares, len(points))
+
+
+def _summed(who: NDArray[np.intp], values: Float, count: int) -> Float:
+    """(count, c) sums of the rows of `values` (k, c) of one number `who` (k,)."""
+    sums = [np.bincount(who, column, minlength=count) for column in values.T]
+    return np.stack(sums, axis=1, dtype=np.float64)
 
 
 def edges_factor(

@@ -22,7 +22,6 @@ Source: KHR_lights_punctual (Khronos).
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,6 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
+from andon.files.cached import read_cached
 from andon.files.meshes import MeshLight, read_lights
 from andon.lamps.distributions import spot_coefficients
 from andon.lamps.model import DirectionalLamp, PointLamp, SpotLamp
@@ -122,11 +122,7 @@ def _free(name: str, taken: set[str]) -> str:
 
 def _lights(path: Path, field: str) -> tuple[MeshLight, ...]:
     """The file's lights, read again only when it changed: lamps are resolved for each frame."""
-    try:
-        state = path.stat()
-    except OSError:
-        return read_lights(path)  # says what is wrong
-    lights = _read_once(path, state.st_mtime_ns, state.st_size)
+    lights = read_cached(read_lights, path)
     if not lights:
         raise InputError(
             "has no lights of KHR_lights_punctual",
@@ -139,8 +135,3 @@ def _lights(path: Path, field: str) -> tuple[MeshLight, ...]:
             f"must have at most {MAX_LIGHTS} lights, has {len(lights)}", file=path, field=field
         )
     return lights
-
-
-@lru_cache(maxsize=32)
-def _read_once(path: Path, _modified: int, _bytes: int) -> tuple[MeshLight, ...]:
-    return read_lights(path)

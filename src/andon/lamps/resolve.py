@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.files.photometry import Distribution, read_photometry
+from andon.files.cached import read_cached
+from andon.files.photometry import read_photometry
 from andon.lamps.areas import SOFT_SHADOW
 from andon.lamps.bodies import Body
 from andon.lamps.colour import factors_from_rgb
@@ -222,7 +221,7 @@ def _spot(table: SpotTable) -> SpotLamp:
 
 
 def _luminaire(scene: Scene, place: str, table: IesTable) -> GoniometricLamp:
-    distribution = _read(scene.path(table.file, f"{place}.file"))
+    distribution = read_cached(read_photometry, scene.path(table.file, f"{place}.file"))
     direction = unit(table.direction)
     peak = table.intensity_cd
     if peak is None and table.flux_lm is not None:
@@ -259,20 +258,6 @@ def _right(direction: Float, roll_radians: float) -> Float:
         right = np.array([1 - x * x / below_zenith, x, -x * z / below_zenith])
     side = np.cross(right, direction)
     return np.cos(roll_radians) * right + np.sin(roll_radians) * side
-
-
-def _read(path: Path) -> Distribution:
-    """The file's distribution; read again only when it changed, not for each frame."""
-    try:
-        state = path.stat()
-    except OSError:
-        return read_photometry(path)  # says what is wrong
-    return _read_once(path, state.st_mtime_ns, state.st_size)
-
-
-@lru_cache(maxsize=64)
-def _read_once(path: Path, _modified: int, _bytes: int) -> Distribution:
-    return read_photometry(path)
 
 
 def _directional(table: DirectionalTable) -> DirectionalLamp:

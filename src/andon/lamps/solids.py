@@ -11,7 +11,7 @@ from andon.lamps.triangles import triangle_areas
 from andon.quantities import Geometry
 from andon.spaces import perpendicular
 
-__all__ = ["capsule", "disk", "grid", "icosphere", "quarters"]
+__all__ = ["capsule", "disk", "grid", "icosphere", "quads", "quarters"]
 
 Float = NDArray[np.float64]
 
@@ -78,17 +78,17 @@ def grid(origin: Float, across: Float, along: Float, columns: int, rows: int, /)
     normal /= np.linalg.norm(normal)
     return Geometry(
         points.reshape(-1, 3),
-        _quads(columns, rows),
+        quads(rows, columns),
         np.broadcast_to(normal, (points.size // 3, 3)).copy(),
     )
 
 
-def _quads(columns: int, rows: int) -> NDArray[np.int32]:
-    first = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
-    above = first + columns + 1
-    one = np.stack([first, first + 1, above + 1], axis=1)
-    other = np.stack([first, above + 1, above], axis=1)
-    return np.concatenate([one, other]).astype(np.int32)
+def quads(rows: int, columns: int, /) -> NDArray[np.int32]:
+    """(2·rows·columns, 3) indices into a (rows + 1, columns + 1) grid of vertices."""
+    index = np.arange((rows + 1) * (columns + 1)).reshape(rows + 1, columns + 1)
+    a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
+    pairs = np.stack([np.stack([a, b, c], -1), np.stack([a, c, d], -1)], axis=2)
+    return pairs.reshape(-1, 3).astype(np.int32)
 
 
 def capsule(ends: Float, radius_m: float, /, *, around: int = 48, caps: int = 16) -> Geometry:
@@ -104,7 +104,7 @@ def capsule(ends: Float, radius_m: float, /, *, around: int = 48, caps: int = 16
     out = np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v
     normals = np.cos(rise)[:, None, None] * out + np.sin(rise)[:, None, None] * axis
     points = ends[end][:, None] + radius_m * normals
-    triangles = _quads(around, 2 * caps + 1)
+    triangles = quads(2 * caps + 1, around)
     flat = points.reshape(-1, 3)
     area = triangle_areas(flat[triangles])
     return Geometry(flat, triangles[area > 1e-12 * area.max()], normals.reshape(-1, 3))

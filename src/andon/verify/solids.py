@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from andon.lamps.solids import quads
 from andon.lamps.triangles import area_vectors
 
 __all__ = ["Solid", "box", "facet_normals", "icosphere", "lathe", "panel", "torus", "wedge", "weld"]
@@ -73,14 +74,6 @@ def weld(positions: Float, triangles: Int, /) -> tuple[Float, Int]:
     return positions[first], joined[(a != b) & (b != c) & (c != a)]
 
 
-def _grid_triangles(rows: int, columns: int) -> Int:
-    """(2·rows·columns, 3) indices into a (rows + 1, columns + 1) grid of vertices."""
-    index = np.arange((rows + 1) * (columns + 1)).reshape(rows + 1, columns + 1)
-    a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
-    pairs = np.stack([np.stack([a, b, c], -1), np.stack([a, c, d], -1)], axis=2)
-    return pairs.reshape(-1, 3).astype(np.int32)
-
-
 def panel(
     origin: ArrayLike, along: ArrayLike, across: ArrayLike, divisions: tuple[int, int]
 ) -> Solid:
@@ -93,7 +86,7 @@ def panel(
         + s * np.asarray(along, np.float64)
         + t * np.asarray(across, np.float64)
     )
-    return Solid(grid.reshape(-1, 3), _grid_triangles(count_across, count_along))
+    return Solid(grid.reshape(-1, 3), quads(count_across, count_along))
 
 
 def box(size: ArrayLike, divisions: tuple[int, int, int] = (1, 1, 1)) -> Solid:
@@ -183,7 +176,7 @@ def torus(ring_radius: float, tube_radius: float, divisions: tuple[int, int]) ->
     v = np.linspace(0, 2 * np.pi, through + 1)[None, :]
     out = ring_radius + tube_radius * np.cos(v)
     grid = np.stack([out * np.cos(u), tube_radius * np.sin(v) + 0 * u, -out * np.sin(u)], axis=-1)
-    triangles = _grid_triangles(around, through)[:, ::-1]
+    triangles = quads(around, through)[:, ::-1]
     return Solid(*weld(grid.reshape(-1, 3), triangles), curved=True)
 
 
@@ -198,5 +191,5 @@ def lathe(radii: ArrayLike, heights: ArrayLike, segments: int) -> Solid:
         np.asarray(heights, np.float64)[None, :, None], (segments + 1, out.size, 1)
     )
     grid = np.concatenate([out * np.cos(turn), up, -out * np.sin(turn)], axis=-1)
-    triangles = _grid_triangles(segments, out.size - 1)[:, ::-1]
+    triangles = quads(segments, out.size - 1)[:, ::-1]
     return Solid(*weld(grid.reshape(-1, 3), triangles), curved=True)

@@ -326,7 +326,7 @@ def test_a_scene_without_ambient(refused_scene):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--tone", "reinhart"], "andon: --tone: must be one of 'none', 'reinhard', "),
+        (["--tone", "reinhart"], "andon: --tone: must be one of 'none', 'hue', 'reinhard', "),
         (["--tone", "reinhart"], "got 'reinhart'; did you mean 'reinhard'?"),
         (["--exposure", "-1"], "andon: --exposure: must be > 0, got -1.0"),
     ],

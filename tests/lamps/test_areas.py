@@ -1,6 +1,7 @@
 """Area lamps of a scene: luminance from what is stated, what is drawn, and shells in a scene."""
 
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,6 @@ from andon.lamps import (
     MeshLamp,
     PointLamp,
     PolygonLamp,
-    Shadow,
     SphereLamp,
     TubeLamp,
     body_of,
@@ -20,6 +20,7 @@ from andon.lamps import (
     resolve_lamps,
     resources,
 )
+from andon.lamps.areas import SOFT_SHADOW
 from andon.lamps.shells import exact
 from andon.lamps.shells.exact import solve_shell
 from andon.lamps.shells.form import form_of
@@ -97,7 +98,7 @@ def test_luminance_from_each_way_to_state_it(folder, kind):
         assert type(found) is expected_type
         assert photometric(found.luminance_cd_m2) == pytest.approx(500)
         assert found.luminance_cd_m2[0] > found.luminance_cd_m2[2]
-        assert found.shadow == Shadow(512, "linear", 16, frozenset({found.name}))
+        assert found.shadow == replace(SOFT_SHADOW, through=frozenset({found.name}))
 
 
 @pytest.mark.parametrize("kind", ["disk", "rectangle", "polygon"])

@@ -115,8 +115,11 @@ class MeshLamp(AreaLamp):
     positions_m : (n, 3) metres, world.
     triangles : (m, 3) int32.
     facet_luminance_cd_m2 : (m, 3) cd/m² of each triangle; None: `luminance_cd_m2` for all.
+    facet_groups : (m,) facets of one number shine alike at all times; None: facets with
+        luminances of their own never do.
     """
 
     positions_m: Float
     triangles: NDArray[np.int32]
     facet_luminance_cd_m2: Float | None = None
+    facet_groups: NDArray[np.int32] | None = None

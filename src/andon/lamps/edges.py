@@ -108,7 +108,7 @@ def _shining(lamp: MeshLamp, count: int) -> tuple[Float, NDArray[np.integer[Any]
     if lamp.facet_luminance_cd_m2 is None:
         uniform = np.asarray(lamp.luminance_cd_m2, np.float64)
         return np.tile(uniform, (count, 1)), np.zeros(count, np.int32)
-    groups: NDArray[np.int32] | None = getattr(lamp, "facet_groups", None)
+    groups = lamp.facet_groups
     own = np.arange(count) if groups is None else groups
     return np.asarray(lamp.facet_luminance_cd_m2, np.float64), own
 

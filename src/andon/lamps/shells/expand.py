@@ -110,19 +110,19 @@ def _soft(lamp: PointLamp, samples: int = SOFT_SHADOW.samples) -> Shadow | None:
 
 
 def _outside(lamp: PointLamp, shell: Shell, form: Form, solution: Solution) -> Lamp:
-    own = f"{lamp.name}"
     if shell.radius_m is not None and type(lamp) is PointLamp:
         luminance = shell.transmittance * lamp.intensity_cd / (np.pi * shell.radius_m**2)
         return SphereLamp(
-            own, luminance, lamp.position_m, shell.radius_m, shadow=_soft(lamp), drawn=False
+            lamp.name, luminance, lamp.position_m, shell.radius_m, shadow=_soft(lamp), drawn=False
         )
     luminance = solution.facet_cd_m2 * lamp.intensity_cd
     return MeshLamp(
-        own,
+        lamp.name,
         luminance.mean(axis=0),
         form.facets.reshape(-1, 3) + lamp.position_m,
         np.arange(3 * len(form.facets), dtype=np.int32).reshape(-1, 3),
         luminance,
+        form.facet_groups,
         shadow=_soft(lamp),
         drawn=False,
     )

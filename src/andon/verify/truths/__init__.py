@@ -18,8 +18,9 @@ oracle          question                      known error                cost (t
 
 `lampshade` asks Radiance for light that goes round in paper, with rays that are aimed at it.
 
-Radiance and Embree agree: over the furnished room's picture with four lamps, Radiance and the closed
-form with Embree's shadows differ by more than 0.1 % in 0.02 % of pixels, all at shadow edges.
+Radiance and Embree agree: over the furnished room's picture with four lamps, Radiance and the
+closed form with Embree's shadows differ by more than 0.1 % in 0.02 % of pixels, all at edges of
+shadows.
 
 Alternatives: Mitsuba 3 (a path tracer: noise of 1 % needs 10⁴ paths per point, and its wheel is a
 test dependency only); trimesh's ray casting (Embree again, but 2.4 s to import).

@@ -39,7 +39,7 @@ RATIOS = (0.25, 1.0, 4.0)
 BEGINS, ENDS = 0.9, 0.1
 WIDTH = 400
 WHITE = np.full(3, 1000.0)
-# What a lamp has unless told otherwise: 16 samples and maps of 256²; and four times as fine.
+# Beside what a lamp has unless told otherwise: four times the samples, maps twice as fine.
 FINE_SHADOW = Shadow(map_size=1024, samples=64)
 
 

@@ -215,7 +215,8 @@ def test_whatever_comes_stays_finite(gpu, sigma):
     picture = np.full((*seen.shape, 3), BODY_LIMIT)
     expected = reference.add_glow(picture, usable, glow(sigma), seen)
     actual = glow_by_gpu(gpu, picture, bodies, glow(sigma), seen)
-    assert_agree(actual, expected, atol=PEAK * BODY_LIMIT)
+    # What half floats cannot hold is cut, and white on any display.
+    assert_agree(actual, np.minimum(expected, BODY_LIMIT), atol=PEAK * BODY_LIMIT)
     alone = filtered_by_gpu(gpu, bodies, glow(sigma), seen)
     assert_agree(alone, reference.filtered(usable, glow(sigma), seen), atol=PEAK * BODY_LIMIT)
 

@@ -17,7 +17,7 @@ __all__ = ["BODY_LIMIT", "GlowStage"]
 
 # Luminance of a body, in units of the picture, above which it is cut: what a half float holds. A
 # unit is the picture's white, so in a room of 1 lx that is 20,000 cd/m², a frosted bulb. Where the
-# sum is more than that the picture is infinite, which the display shows as white.
+# sum is more than that the picture is cut, or infinite: white on any display.
 BODY_LIMIT = 65504.0
 
 FORMAT = "rgba16float"

@@ -92,7 +92,9 @@ def _from_an_area(lamp: AreaLamp, position: Float, normal: Float) -> Float:
         case MeshLamp():
             facets = lamp.facet_luminance_cd_m2
             if facets is not None:
-                return mesh_factor(*place, lamp.positions_m, lamp.triangles, facets)
+                # Light that is taken away is negative in all facets.
+                side = np.sign(lamp.luminance_cd_m2)
+                return side * mesh_factor(*place, lamp.positions_m, lamp.triangles, np.abs(facets))
             factor = mesh_factor(*place, lamp.positions_m, lamp.triangles)
         case _:
             raise TypeError(f"no illuminance of {type(lamp).__name__}")

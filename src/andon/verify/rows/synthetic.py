@@ -197,6 +197,8 @@ def _sheet(engine: EngineName, codes: Bytes) -> None:
         return
     from PIL import Image
 
+    Path(folder).mkdir(parents=True, exist_ok=True)
+
     captured, relit, _ = _truth(CUTS)
     truth = _codes(relit)
     difference = 127.5 + 8 * (codes.astype(float) - truth)

@@ -12,7 +12,7 @@ from andon.bench.areas import KINDS, costs_and_errors
 __all__ = ["draw_plot", "write_plot"]
 
 COUNTS = (0, 1, 4, 9, 16, 36, 64)
-WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 900, 560, 90, 130, 50, 70
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 900, 560, 90, 40, 50, 70
 # Drawn larger and scaled down: Pillow's lines have no smooth edges of their own.
 OVERSAMPLING = 2
 INK, PAPER, RULE = (32, 32, 32), (250, 249, 246), (215, 213, 208)
@@ -44,7 +44,7 @@ def draw_plot(series: Series, /) -> np.ndarray[Any, np.dtype[np.uint8]]:
     image = Image.new("RGB", (WIDTH * scale, HEIGHT * scale), PAPER)
     draw: Any = ImageDraw.Draw(image)
     font: Any = ImageFont.load_default(size=15 * scale)
-    points = [(ms, error) for rows in series.values() for _, ms, error in rows]
+    points = [(ms, error) for rows in series.values() for count, ms, error in rows if count]
     x_low, x_high = _decades([max(ms, 0.5) for ms, _ in points])
     y_low, y_high = _decades([error * 100 for _, error in points])
 
@@ -69,21 +69,25 @@ def draw_plot(series: Series, /) -> np.ndarray[Any, np.dtype[np.uint8]]:
         for (x, y), (count, _, _) in zip(spots, [row for row in rows if row[0]], strict=True):
             radius = 4 * scale
             draw.ellipse([x - radius, y - radius, x + radius, y + radius], colour)
-            draw.text((x, y - 8 * scale), f"{count}", colour, font, anchor="mb")
-        draw.text((spots[-1][0] + 10 * scale, spots[-1][1]), kind, colour, font, anchor="lm")
+            if kind == KINDS[0]:  # the others' dots stand for the same counts
+                draw.text((x, y + 8 * scale), f"{count}", colour, font, anchor="mt")
+        row = TOP + 20 * list(series).index(kind)
+        plain = next((f"{error:.0%}" for count, _, error in rows if not count), "")
+        words = f"{kind} (no shadow: {plain})" if plain else kind
+        draw.text(((WIDTH - RIGHT) * scale, row * scale), words, colour, font, anchor="rm")
     title = "Soft shadows of area lamps: error against cost, by samples"
     draw.text((LEFT * scale, 14 * scale), title, INK, font)
-    x_title = "ms a lamp, 1280×720"
+    x_title = "ms a lamp, 1280 x 720 pixels"  # Pillow's own font has no ×
     draw.text((WIDTH * scale / 2, (HEIGHT - 16) * scale), x_title, INK, font, anchor="mb")
     return np.asarray(image.resize((WIDTH, HEIGHT), Image.Resampling.LANCZOS), np.uint8)
 
 
 def _decades(values: list[float]) -> tuple[float, float]:
-    """Ends of an axis, as powers of ten: halves of a decade around the values."""
+    """Ends of an axis, as powers of ten: fifths of a decade around the values."""
     low, high = np.log10(min(values)), np.log10(max(values))
-    return float(np.floor(2 * low - 0.2) / 2), float(np.ceil(2 * high + 0.2) / 2)
+    return float(np.floor(5 * low - 0.5) / 5), float(np.ceil(5 * high + 0.5) / 5)
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    steps = [factor * 10.0**power for power in range(-4, 6) for factor in (1, 2, 5)]
+    steps = [factor * 10.0**power for power in range(-4, 6) for factor in (1, 1.5, 2, 3, 5, 7)]
     return [value for value in steps if 10**low <= value <= 10**high * 1.001]

@@ -126,8 +126,8 @@ class _Area(LampTable, Shadowing):
     shadow_samples: Annotated[int, Field(ge=1, le=64)] = Field(
         default=16,
         description="Points on the area from which its shadow is looked at, 1…64; the penumbra is "
-        "their mean. 16 err by about 4 % of the light (RMS), 64 by 3 % at four times as many "
-        "shadow maps.",
+        "their mean. With maps of 512² texels 16 err by about 4 % of the light (RMS), 4 by 5 %, and "
+        "more than 16 gain little: larger maps do.",
     )
 
 

@@ -126,7 +126,7 @@ class _Area(LampTable, Shadowing):
     shadow_samples: Annotated[int, Field(ge=1, le=64)] = Field(
         default=16,
         description="Points on the area from which its shadow is looked at, 1…64; the penumbra is "
-        "their mean. With maps of 512² texels 16 err by about 4 % of the light (RMS), 4 by 5 %, and "
+        "their mean. With maps of 512² texels 16 err by about 4 % of the light (RMS), 4 by 5 %; "
         "more than 16 gain little: larger maps do.",
     )
 

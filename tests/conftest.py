@@ -68,3 +68,11 @@ def gpu():
         if os.environ.get("CI") == "true":
             pytest.fail(f"{error}; or set ANDON_ENGINE=reference", pytrace=False)
         pytest.skip(str(error))
+
+
+@pytest.fixture(params=["reference", "gpu"])
+def engine(request):
+    """The name of each engine in turn."""
+    if request.param == "gpu":
+        request.getfixturevalue("gpu")
+    return request.param

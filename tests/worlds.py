@@ -13,6 +13,7 @@ __all__ = [
     "ALL_CODES",
     "ball",
     "block",
+    "scene",
     "sheet",
     "sphere_depth",
     "unit",
@@ -166,3 +167,10 @@ def write_scene_files(folder, **tables):
         "ambient": {"illuminance_lux": 200.0},
     }
     return base | tables
+
+
+def scene(folder, **tables):
+    """The scene of `write_scene_files`, with its files in `folder`."""
+    from andon.scene import scene_from_dict
+
+    return scene_from_dict(write_scene_files(folder, **tables), folder=folder)

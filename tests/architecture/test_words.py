@@ -43,7 +43,7 @@ def test_repository_is_seen():
         ("open('/" + "home/ann/photo.png')", True),
         ("C:" + "\\Users\\ann", True),
         ("https://example.org/home/ann", False),
-        ("~/work/photo.png", False),
+        ("~/photo.png", False),
         ("usr/share/opt/x", False),
     ],
 )

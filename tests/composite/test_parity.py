@@ -40,13 +40,6 @@ def holed_depth(view):
     return depth
 
 
-@pytest.fixture(params=["reference", "gpu"])
-def engine(request):
-    if request.param == "gpu":
-        request.getfixturevalue("gpu")
-    return request.param
-
-
 @pytest.mark.parametrize("name", RESPONSES)
 @pytest.mark.parametrize("ambient", [1.0, 300.0, (5e4, 1.0, 0.02)], ids=["1 lx", "300 lx", "odd"])
 def test_without_lamps_every_byte_stays(engine, name, ambient):

@@ -10,6 +10,7 @@ import pytest
 
 from andon.errors import InputError
 from andon.files import read_depth_array, read_picture
+from requirements import missing, required
 
 from .specimens import hdr_header, hdr_new_rle, huge_exr, rgbe_pixels
 
@@ -121,14 +122,14 @@ def test_xyze_becomes_radiance_with_equal_channels_for_neutral_light(tmp_path: P
 
 
 def test_xyze_written_by_radiance_comes_back(tmp_path: Path) -> None:
-    pyradiance = pytest.importorskip("pyradiance")
+    pyradiance = required("pyradiance")
     import os
     import subprocess
 
     folder = Path(pyradiance.__file__).parent / "bin"
     program = folder / "ra_xyze"
     if not program.exists():
-        pytest.skip("this pyradiance has no ra_xyze")
+        missing("this pyradiance has no ra_xyze")
     gray = PIXELS.copy()
     gray[..., :3] = gray[..., :1] | 128
     source = put(tmp_path, "a.hdr", hdr_header(4, 12, "EXPOSURE=4") + gray.tobytes())

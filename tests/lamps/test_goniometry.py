@@ -1,7 +1,5 @@
 """Measured distributions: which way the angles run, flux, beams, the table for the GPU."""
 
-import importlib.util
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,6 +10,7 @@ from andon.files import Distribution, read_photometry
 from andon.lamps import goniometry
 from andon.lamps.uniform import uniform_grid
 from andon.verify.truths.luminaires import radiance_candela
+from requirements import required
 
 ANGLES_C = (np.linspace(0, 360, 25), np.linspace(0, 180, 37))
 ANGLES_B = (np.linspace(-90, 90, 37), np.linspace(-180, 180, 73))
@@ -233,9 +232,10 @@ def test_poles_of_a_real_floodlight_are_those_of_type_b(data_dir):
     assert np.ptp(lamp.candela[:, 0]) > 0
 
 
-RADIANCE = pytest.mark.skipif(
-    importlib.util.find_spec("pyradiance") is None, reason="pyradiance is not installed"
-)
+@pytest.fixture
+def radiance():
+    """Radiance's programs are here."""
+    return required("pyradiance")
 
 
 def directions_within(lamp, count=300):
@@ -246,7 +246,7 @@ def directions_within(lamp, count=300):
     return h, v
 
 
-@RADIANCE
+@pytest.mark.usefixtures("radiance")
 @pytest.mark.parametrize("name", ["cu_calc/1.IES", "cu_calc/3.IES", "cu_calc/5.IES",
                                   "cu_calc/7.IES", "tuberlin/HeadLight.ies"])  # fmt: skip
 def test_candela_beside_ies2rad(data_dir, name):
@@ -259,7 +259,7 @@ def test_candela_beside_ies2rad(data_dir, name):
     )
 
 
-@RADIANCE
+@pytest.mark.usefixtures("radiance")
 @pytest.mark.parametrize("plane", ["vertical", "horizontal"])
 @pytest.mark.parametrize("name", ["flood_2.1.IES", "flood_2.2.ies"])
 def test_floodlights_beside_ies2rad_in_their_main_planes(data_dir, name, plane):
@@ -275,7 +275,7 @@ def test_floodlights_beside_ies2rad_in_their_main_planes(data_dir, name, plane):
     assert theirs.max() > 0.9 * goniometry.candela(lamp, directions).max() > 0
 
 
-@RADIANCE
+@pytest.mark.usefixtures("radiance")
 @pytest.mark.parametrize("first", ["IESNA91", "IESNA:LM-63-2002"])
 def test_factors_beside_ies2rad(tmp_path, first):
     """Multiplier × ballast, and the second factor for old files only; -m scales on top."""

@@ -12,9 +12,8 @@ from andon.engines.prepared import prepare
 from andon.errors import InputError
 from andon.lamps import Shadow
 from andon.pipeline import Renderer
-from andon.scene import scene_from_dict
 from comparison import assert_agree, assert_same_picture
-from worlds import ball, block, write_glb, write_obj, write_relight_files, write_scene_files
+from worlds import ball, block, scene, write_glb, write_obj, write_relight_files
 
 # A wall 2 m before the camera, which looks along −Z.
 BALL = {
@@ -25,17 +24,6 @@ PANEL = {
     "kind": "rectangle", "name": "panel", "position": [-0.4, 0.2, -1.4], "direction": [0.3, -1, 0],
     "width_m": 0.3, "height_m": 0.2, "luminance_cd_m2": 900.0, "temperature_k": 4000.0,
 }  # fmt: skip
-
-
-@pytest.fixture(params=["reference", "gpu"])
-def engine(request):
-    if request.param == "gpu":
-        request.getfixturevalue("gpu")
-    return request.param
-
-
-def scene(folder, **tables):
-    return scene_from_dict(write_scene_files(folder, **tables), folder=folder)
 
 
 def test_bodies_on_both_engines(gpu, tmp_path):

@@ -12,23 +12,20 @@ from andon.pipeline import Renderer
 from andon.scene import scene_from_dict
 from andon.spaces import View, look_at, transform_points
 from comparison import assert_agree, assert_same_picture
-from worlds import block, sphere_depth, write_glb, write_obj, write_relight_files, write_scene_files
+from worlds import (
+    block,
+    scene,
+    sphere_depth,
+    write_glb,
+    write_obj,
+    write_relight_files,
+    write_scene_files,
+)
 
 LAMP = {
     "kind": "point", "name": "lamp", "position": [-0.5, 0.3, -1.2], "intensity_cd": 60.0,
     "temperature_k": 2700.0, "visible_radius_m": 0.03,
 }  # fmt: skip
-
-
-@pytest.fixture(params=["reference", "gpu"])
-def engine(request):
-    if request.param == "gpu":
-        request.getfixturevalue("gpu")
-    return request.param
-
-
-def scene(folder, **tables):
-    return scene_from_dict(write_scene_files(folder, **tables), folder=folder)
 
 
 def test_a_scene_on_both_engines(gpu, tmp_path):

@@ -9,8 +9,9 @@ from andon.scene import LAMP_KINDS, json_schema, parse_scene, scene_reference_ma
 from andon.scene.base import Table
 from andon.scene.reference import EXAMPLE, EXAMPLES
 from andon.scene.schema import publish
+from requirements import required
 
-jsonschema = pytest.importorskip("jsonschema")
+jsonschema = required("jsonschema")
 
 DOCS = Path(__file__).parents[2] / "docs"
 

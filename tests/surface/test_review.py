@@ -11,11 +11,11 @@ from andon.engines.prepared import Prepared
 from andon.errors import InputError
 from andon.lamps import DirectionalLamp, PointLamp
 from andon.pipeline import Renderer, relight
-from andon.quantities import CameraFrame
+from andon.quantities import CameraFrame, merged
 from andon.spaces import View
 from andon.surface.load import surface_of_depth
 from andon.surface.model import SurfaceModel
-from andon.surface.occluder import decimated, merged
+from andon.surface.occluder import decimated
 from andon.surface.triangulate import triangulate_depth
 
 VIEW = View("pinhole", 160, 120, 100.0, 100.0, 79.5, 59.5)

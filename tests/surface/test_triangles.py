@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from andon.quantities import Geometry
+from andon.quantities import Geometry, merged
 from andon.rays import face_normals
 from andon.spaces import View, look_at
-from andon.surface.occluder import decimated, merged
+from andon.surface.occluder import decimated
 from andon.surface.triangulate import thickened, triangulate_depth
 from andon.verify.rooms import camera_in, furnished_room
 from comparison import assert_agree

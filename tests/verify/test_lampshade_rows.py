@@ -9,6 +9,7 @@ from andon.verify.rows import lampshade
 from andon.verify.run import chosen, measured
 from andon.verify.solids import icosphere
 from andon.verify.truths.lampshade import lampshade_lux, per_hit, walk
+from requirements import required
 
 
 def test_a_closed_ball_keeps_all_and_an_open_drum_what_its_openings_leave():
@@ -32,7 +33,7 @@ def test_what_a_hit_does_adds_up_to_the_net_shares():
 
 
 def test_radiances_paper_sends_t_of_what_meets_it_to_the_walls(monkeypatch):
-    pytest.importorskip("pyradiance")
+    required("pyradiance")
     monkeypatch.setattr(lampshade, "RAYS", 64)
     lampshade._truth.cache_clear()
     assert lampshade.truth_flux_error("dark") < 0.02
@@ -44,7 +45,7 @@ def test_radiances_paper_sends_t_of_what_meets_it_to_the_walls(monkeypatch):
 
 
 def test_the_bulb_shines_through_the_openings_only():
-    pytest.importorskip("pyradiance")
+    required("pyradiance")
     points = np.array([[0.0, -1.3, 0], [2.0, 0, 0]])
     normals = np.array([[0.0, 1, 0], [-1.0, 0, 0]])
     paper = per_hit(walk(lampshade.drum()), t=0.5, a=0.5)

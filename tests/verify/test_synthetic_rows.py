@@ -6,8 +6,9 @@ import pytest
 from andon.verify.registry import rows
 from andon.verify.rows import synthetic
 from andon.verify.run import chosen, measured
+from requirements import required
 
-pytest.importorskip("pyradiance")
+required("pyradiance")
 
 
 @pytest.fixture

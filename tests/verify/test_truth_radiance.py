@@ -23,8 +23,9 @@ from andon.verify.truths.radiance import (
     time_picture,
     time_view,
 )
+from requirements import required
 
-pytest.importorskip("pyradiance")
+required("pyradiance")
 
 UP = np.array([0.0, 1.0, 0.0])
 

@@ -80,7 +80,7 @@ class Prepared:
     def casters(self, bodies: Sequence[Body]) -> Casters:
         """What casts shadows while the luminous bodies are where they are."""
         groups = [(REAL, self.surface.occluder.geometry), (OBJECTS, self.surface.casters)]
-        groups += [(body.name, body.geometry) for body in bodies if body.casts_shadow]
+        groups += [(body.name, body.geometry) for body in bodies]
         return Casters(tuple(groups))
 
 
@@ -124,7 +124,7 @@ def prepare(scene: Scene, /) -> Prepared:
 
 def _virtual_groups(scene: Scene) -> frozenset[str]:
     """Caster groups that the photograph did not have: virtual objects, and bodies of lamps."""
-    bodies = [body.name for body in resolve_bodies(scene, 0.0) if body.casts_shadow]
+    bodies = [body.name for body in resolve_bodies(scene, 0.0)]
     casting = any(table.casts_shadow for table in scene.object)
     return frozenset([*bodies, *([OBJECTS] if casting else [])])
 

@@ -25,7 +25,6 @@ class Body:
     outside_cd_m2, inside_cd_m2 : (n, 3) luminance of each vertex by the lamp's own light, seen
         from outside and from inside.
     reflectance : (3,) diffuse reflectance for the light of other lamps, both sides.
-    casts_shadow : hides other lamps.
     """
 
     name: str
@@ -33,4 +32,3 @@ class Body:
     outside_cd_m2: Float
     inside_cd_m2: Float
     reflectance: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    casts_shadow: bool = True

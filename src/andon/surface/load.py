@@ -15,14 +15,14 @@ from andon.files.depth import read_depth_array
 from andon.files.meshes import read_mesh
 from andon.files.pictures import read_picture
 from andon.lenses import undistort
-from andon.quantities import Geometry, Material
+from andon.quantities import Geometry, Material, merged
 from andon.rays import face_normals
 from andon.scene import Scene
 from andon.spaces import View, rotate, transform_points
 from andon.surface.depth import DepthEncoding, depth_from_raw
 from andon.surface.model import EMPTY_GEOMETRY, ShadowBias, SurfaceModel
 from andon.surface.normals import normals_from_depth
-from andon.surface.occluder import decimated, merged
+from andon.surface.occluder import decimated
 from andon.surface.textures import with_linear_textures
 from andon.surface.triangulate import thickened, triangulate_depth
 

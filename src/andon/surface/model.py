@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.quantities import Geometry
-from andon.surface.occluder import Occluder, merged
+from andon.quantities import Geometry, merged
+from andon.surface.occluder import Occluder
 
 __all__ = ["EMPTY_GEOMETRY", "ShadowBias", "SurfaceModel"]
 

@@ -12,7 +12,7 @@ from andon.quantities import Geometry
 from andon.rays import RayScene
 from andon.surface.nearest import nearest_distance
 
-__all__ = ["Occluder", "decimated", "merged"]
+__all__ = ["Occluder", "decimated"]
 
 # Points that measure the decimation's error; 4096 samples give the 95th percentile within ±0.7 %
 # of the population (binomial, 2σ).
@@ -101,14 +101,3 @@ def _sight_m(scene: RayScene, points: NDArray[Any], eye: NDArray[Any]) -> NDArra
 
 def _thinned(rows: NDArray[Any]) -> NDArray[Any]:
     return rows[:: max(1, len(rows) // ERROR_SAMPLES)]
-
-
-def merged(*parts: Geometry) -> Geometry:
-    """One geometry from several; normals, textures and materials are left behind."""
-    offsets = np.cumsum([0, *(len(part.positions) for part in parts)])
-    return Geometry(
-        np.concatenate([part.positions for part in parts]),
-        np.concatenate(
-            [part.triangles + offset for part, offset in zip(parts, offsets, strict=False)]
-        ).astype(np.int32),
-    )

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps.areas import AreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
+from andon.lamps.polygons import vector_area
 from andon.quantities import photometric
 from andon.spaces import perpendicular
 
@@ -222,9 +223,9 @@ def _on_a_disk(count: int) -> Float:
 
 def _on_a_polygon(lamp: PolygonLamp, count: int) -> Samples:
     vertices = lamp.vertices_m
-    twice_area = np.cross(vertices, np.roll(vertices, -1, axis=0)).sum(axis=0)
-    area = float(np.linalg.norm(twice_area)) / 2
-    normal = twice_area / (2 * area)
+    spanned = vector_area(vertices)
+    area = float(np.linalg.norm(spanned))
+    normal = spanned / area
     right = vertices[1] - vertices[0]
     right /= np.linalg.norm(right)
     up = np.cross(normal, right)

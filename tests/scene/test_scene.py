@@ -192,7 +192,11 @@ EVERYTHING = {
     | {"removed": ["window"], "dimming_mode": "paper"},
     "lamp": LAMP_TABLES,
     "baked": {"folder": "maps"},
-    "probes": {"volume": "v", "placement": {"kind": "lattice"}, "place": [{"position": [0, 0, 0]}]},
+    "probes": {
+        "volume": "v",
+        "placement": {"kind": "lattice", "spacing_m": 1},
+        "place": [{"position": [0, 0, 0]}],
+    },
     "object": [{"mesh": "m", "scale": 2, "key": [{"time_seconds": 0, "position": [1, 1, 1]}]}],
     "glass": [
         {"radius_m": 0.075, "background": {"kind": "texture", "file": "b.png"}},

@@ -1,26 +1,24 @@
-"""[ambient], [baked] and [probes]: light that is already there."""
+"""[ambient] and [baked]: light that is already there."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field, model_validator
 
 from andon.scene.base import (
-    Fraction,
     Name,
     NonNegativeTriple,
     Positive,
     PositiveTriple,
     Reference,
     Table,
-    Vector,
     exactly_one,
     refusal,
 )
 from andon.scene.lamp import AnyLamp
 
-__all__ = ["Ambient", "Baked", "Placement", "ProbePlace", "Probes"]
+__all__ = ["Ambient", "Baked"]
 
 
 class Ambient(Table):
@@ -79,93 +77,4 @@ class Baked(Table):
     depth_tolerance_m: Positive = Field(
         default=0.02,
         description="A map is valid where its depth differs by less than this, metres.",
-    )
-
-
-class ProbePlace(Table):
-    """A probe placed by hand."""
-
-    name: Name = Field(
-        default="probe",
-        description="For messages.",
-    )
-    position: Vector = Field(description="Where it counts, metres, world.")
-    capture_position: Vector | None = Field(
-        default=None,
-        description="Where it is captured, metres; default: its position.",
-    )
-    role: Literal["general", "sky", "bounce", "bleeding"] = Field(
-        default="general",
-        description="What it is there for.",
-    )
-    range_m: Positive | None = Field(
-        default=None,
-        description="Farthest surface captured, metres.",
-    )
-
-
-class Placement(Table):
-    """How probes are placed before a bake."""
-
-    kind: Literal["hand", "nodes", "vertices", "lattice", "panoramas", "automatic"] = Field(
-        default="hand",
-        description="hand: [[probes.place]]; nodes: of a glTF file; automatic: pruned lattice.",
-    )
-    file: Reference | None = Field(
-        default=None,
-        description="glTF of the nodes, or list of panoramas.",
-    )
-    spacing_m: Positive | None = Field(
-        default=None,
-        description="Of a lattice, metres.",
-    )
-    error: Positive | None = Field(
-        default=None,
-        description="Of automatic placement: largest relative irradiance error.",
-    )
-
-
-class Probes(Table):
-    """Light probes."""
-
-    volume: Reference = Field(description="The probe volume: a bake writes it, a frame reads it.")
-    zones: tuple[Name, ...] = Field(
-        default=(),
-        description="Zones that are used; default: all.",
-    )
-    state: Name | None = Field(
-        default=None,
-        description="State of the volume (day, night); default: its first.",
-    )
-    blend_state: Name | None = Field(
-        default=None,
-        description="A second state that is mixed in.",
-    )
-    blend: Fraction = Field(
-        default=0.0,
-        description="0: state … 1: blend_state.",
-    )
-    placement: Placement = Field(
-        default=Placement(),
-        description="Where probes go.",
-    )
-    place: tuple[ProbePlace, ...] = Field(
-        default=(),
-        description="[[probes.place]]: placed by hand.",
-    )
-    cube_size_px: Annotated[int, Field(ge=8, le=256)] = Field(
-        default=128,
-        description="Side of the captured cube maps, 8…256 pixels.",
-    )
-    order: Annotated[int, Field(ge=0, le=4)] = Field(
-        default=2,
-        description="Highest band of the spherical harmonics, 0…4.",
-    )
-    bounces: Annotated[int, Field(ge=0, le=16)] = Field(
-        default=1,
-        description="Times that light is reflected.",
-    )
-    visibility: bool = Field(
-        default=True,
-        description="Walls hide probes behind them.",
     )

@@ -61,8 +61,9 @@ class LampTable(Table):
         description="How its light gets to surfaces; never counted twice.",
     )
     in_probes: bool = Field(
-        default=False,
-        description="Captured by light probes; false for a lamp that lights objects directly.",
+        default=True,
+        description="Light probes capture what surfaces reflect of it; and of kinds sky and "
+        "hemisphere itself, which then lights no object that probes light.",
     )
     flicker: Flicker | None = Field(
         default=None,

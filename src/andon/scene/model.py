@@ -12,12 +12,13 @@ from pydantic import Field, PrivateAttr, model_validator
 
 from andon.errors import InputError
 from andon.quantities import Photometry
-from andon.scene.ambient import Ambient, Baked, Probes
+from andon.scene.ambient import Ambient, Baked
 from andon.scene.base import Table, refusal
 from andon.scene.capture import Capture
 from andon.scene.eye import Atmosphere, Display, Gaze, Glare, Observer
 from andon.scene.lamp import AnyLamp
 from andon.scene.objects import Glass, SceneObject
+from andon.scene.probes import Probes
 from andon.scene.rig import About, Rig
 from andon.scene.surface import Surface
 

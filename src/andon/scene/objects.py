@@ -120,7 +120,11 @@ class SceneObject(Placed):
     )
     lit_by_probes: bool = Field(
         default=True,
-        description="Takes indirect light from [probes].",
+        description="Takes indirect light from [probes], instead of E0.",
+    )
+    lit_by_lamps: bool = Field(
+        default=True,
+        description="Takes direct light from [[lamp]].",
     )
     key: tuple[ObjectKey, ...] = Field(
         default=(),

@@ -1,0 +1,1 @@
+"""What is made once and read by frames: light probes."""

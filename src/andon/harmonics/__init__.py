@@ -1,0 +1,1 @@
+"""Spherical harmonics, bands 0 to 4."""

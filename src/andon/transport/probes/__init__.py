@@ -1,0 +1,1 @@
+"""Light captured at places and mixed between them."""

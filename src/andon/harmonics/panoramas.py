@@ -73,7 +73,8 @@ def cube_from_latlong(
 
     Each texel is the mean over `samples`² points in it, weighted by solid angle; each point is
     bilinear in the panorama. By default as many as keep neighbours, which are farthest apart in
-    the middle of a face, within a pixel of the equator: no small sun is lost between them.
+    the middle of a face, within a pixel of the equator: no small sun there is lost between them.
+    Near the poles pixels are narrower: one of them alone may count for too much or too little.
     """
     check_latlong(picture)
     check_cube_size(size)

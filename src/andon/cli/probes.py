@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import typer
 
-from andon.cli.probes_files import probes_info
-
 __all__ = ["probes_app"]
 
 probes_app = typer.Typer()

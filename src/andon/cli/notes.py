@@ -118,8 +118,8 @@ def _where(points: Any, surface: Surface) -> str:
 
 def _on_lamps(surface: Surface, prepared: Prepared, time_seconds: float) -> list[str]:
     """Lamps that add nothing to any pixel; those of E0 only change what is there."""
-    every, bodies = prepared.lamps(time_seconds), prepared.bodies(time_seconds)
-    lamps = [lamp for lamp in every if lamp.owner not in prepared.sources]
+    moment = prepared.at(time_seconds)
+    lamps = [lamp for lamp in moment.lamps if lamp.owner not in prepared.sources]
     if not lamps or not surface.valid.any():
         return []
     from andon.engines.reference import ReferenceEngine
@@ -129,7 +129,8 @@ def _on_lamps(surface: Surface, prepared: Prepared, time_seconds: float) -> list
     sparse = replace(surface, valid=surface.valid & ((rows + 3 * columns) % SPARSE == 0))
 
     def lights(lamp: Lamp) -> bool:
-        seen = (engine.illuminate(part, [lamp], bodies).lux for part in (sparse, surface))
+        alone = replace(moment, lamps=(lamp,))
+        seen = (engine.illuminate(part, alone).lux for part in (sparse, surface))
         return any(bool((lux > 0).any()) for lux in seen)
 
     parts: dict[str, list[Lamp]] = {}

@@ -1,0 +1,25 @@
+"""What a scene is at one time: all that moves, settled once for both eyes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from andon.lamps import Body, Lamp
+
+__all__ = ["Moment"]
+
+
+@dataclass(frozen=True)
+class Moment:
+    """The moving part of a scene at one time.
+
+    Attributes
+    ----------
+    time_seconds : since the start of the session.
+    lamps : always the same names and kinds.
+    bodies : luminous bodies; always the same names and triangles.
+    """
+
+    time_seconds: float = 0.0
+    lamps: tuple[Lamp, ...] = ()
+    bodies: tuple[Body, ...] = ()

@@ -2,16 +2,16 @@
 
 What
     Surfaces answer as diffuse reflectors, L = ρ·E/π plus what they emit; rays that meet nothing see
-    the sky. The light is kept in two parts, since only one of them may be reflected once more:
+    the sky. The light is kept in parts, since not all of them may be reflected once more:
 
-=============  ===================================  ============================================
-part           is                                   in later bounces
-=============  ===================================  ============================================
-``ambient``    the photograph's own light (or E0    no: E0 was measured, all its reflections are
-               on surfaces without a photograph)    in it already
-``added``      what lamps, emitting materials, the  yes
-               sky and earlier bounces add to it
-=============  ===================================  ============================================
+==============  ================================  ==============================================
+part            is                                in later bounces
+==============  ================================  ==============================================
+``ambient``     the photograph's own light (or    no: E0 was measured, all its reflections are
+                E0 on surfaces without one)       in it already
+``emitted``     of materials, and the sky         the first light that is reflected
+``reflected``   of lamps, or of earlier bounces   yes
+==============  ================================  ==============================================
 
 Why the photograph is looked up
     A photographed surface has no reflectance of its own: it is what the picture shows of it, and
@@ -84,22 +84,24 @@ class Capture:
 
     Attributes
     ----------
-    ambient_cd_m2, added_cd_m2 : (6, s, s, 3) the two parts; their sum is ≥ 0.
+    ambient_cd_m2, emitted_cd_m2, reflected_cd_m2 : (6, s, s, 3) its parts. What is reflected is
+        negative where light is taken away; the sum is ≥ 0.
     distance_m : (6, s, s) to the first surface, inf where there is none; not cut at the range.
     unphotographed_share : of the texels that show the real surface, those that no photograph saw.
     not_finite : texels whose light was no number and is counted as none.
     """
 
     ambient_cd_m2: Float
-    added_cd_m2: Float
+    emitted_cd_m2: Float
+    reflected_cd_m2: Float
     distance_m: Float
     unphotographed_share: float = 0.0
     not_finite: int = 0
 
     @property
     def luminance_cd_m2(self) -> Float:
-        """(6, s, s, 3) all of it."""
-        return self.ambient_cd_m2 + self.added_cd_m2
+        """(6, s, s, 3) all of it, ≥ 0."""
+        return np.maximum(self.ambient_cd_m2 + self.emitted_cd_m2 + self.reflected_cd_m2, 0)
 
 
 def captured(
@@ -108,7 +110,7 @@ def captured(
     lighting: Lighting,
     /,
     *,
-    lux: Float | None,
+    lux: Float,
     range_m: float = np.inf,
 ) -> Capture:
     """The light of a cube map.
@@ -116,32 +118,32 @@ def captured(
     Parameters
     ----------
     directions : (6, s, s, 3) unit.
-    lux : (6, s, s, 3) what lamps and earlier bounces give to each point; None: nothing is
-        reflected but the ambient light, only what emits is seen.
+    lux : (6, s, s, 3) what lamps and earlier bounces give to each point.
     range_m : surfaces beyond are dark; the sky is not cut.
     """
-    valid, virtual = seen.valid, seen.is_object
-    light = np.zeros_like(seen.reflectance) if lux is None else lux
+    valid = seen.valid
     ambient = seen.reflectance * lighting.ambient_lux / np.pi
-    added = seen.reflectance * light / np.pi + seen.emitted_cd_m2
+    emitted = seen.emitted_cd_m2.copy()
+    reflectance = seen.reflectance
     share = 0.0
-    if lighting.photograph is not None:
-        own = valid & ~virtual
+    own = valid & ~seen.is_object
+    if lighting.photograph is not None and own.any():
         shown = lighting.photograph.at(seen.position[own])
         ambient[own] = shown.luminance_cd_m2
-        added[own] = shown.reflectance * light[own] / np.pi
-        share = 1 - float(shown.seen.mean()) if own.any() else 0.0
-    dark = ~(valid & (seen.distance_m <= range_m))
-    ambient[dark] = 0
-    added[dark] = 0
-    missed = ~valid
-    added[missed] = sky_luminance(lighting.sky, directions[missed])
-    bad = ~np.isfinite(ambient + added).all(axis=-1)
-    ambient[bad] = 0
-    added[bad] = 0
+        reflectance = reflectance.copy()
+        reflectance[own] = shown.reflectance
+        share = 1 - float(shown.seen.mean())
     # What is taken away of the photograph's light is at most all of it.
-    added = np.maximum(added, -ambient)
-    return Capture(ambient, added, seen.distance_m, share, int(np.count_nonzero(bad)))
+    reflected = np.maximum(reflectance * lux / np.pi, -ambient)
+    dark = ~(valid & (seen.distance_m <= range_m))
+    parts = (ambient, emitted, reflected)
+    for part in parts:
+        part[dark] = 0
+    emitted[~valid] = sky_luminance(lighting.sky, directions[~valid])
+    bad = ~np.isfinite(ambient + emitted + reflected).all(axis=-1)
+    for part in parts:
+        part[bad] = 0
+    return Capture(*parts, seen.distance_m, share, int(np.count_nonzero(bad)))
 
 
 def sky_luminance(sky: Sequence[Lamp], directions: Float, /) -> Float:

@@ -232,10 +232,10 @@ def _warnings(
             f"only {made} of {probes.placement.count} random probes have room: "
             f"{tally.crowded} places were too near to one, {tally.dropped_in_walls} in walls"
         )
-    crowded, turned = winding_faults(geometry)
-    if crowded + turned:
+    odd, turned = winding_faults(geometry)
+    if odd + turned:
         found.append(
-            f"the surface has {crowded} edges of more than two triangles and {turned} whose "
+            f"the surface has {odd} edges of three triangles or more and {turned} whose "
             "triangles are wound against each other: what is inside a wall is told by majority"
         )
     return tuple(found)

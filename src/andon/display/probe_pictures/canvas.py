@@ -37,9 +37,7 @@ class Canvas:
         here = self.colour[rows, columns]
         self.colour[rows, columns] = here + alpha[..., None] * (colour - here)
 
-    def lines(
-        self, ends: Float, colour: Colour, /, *, width_px: float, ink: float = 1.0
-    ) -> None:
+    def lines(self, ends: Float, colour: Colour, /, *, width_px: float, ink: float = 1.0) -> None:
         """Straight lines between `ends` (n, 2, 3), metres, world.
 
         Where they cross they do not add up; what is nearer has more ink.
@@ -64,8 +62,7 @@ class Canvas:
 
 
 def _clipped(ends: Float) -> Float:
-    """Lines (n, 2, 3) of the camera's frame, cut at the near plane; those behind it are left out.
-    """
+    """Lines (n, 2, 3) of the camera's frame, cut at the near plane; none behind it."""
     a, b = ends[:, 0], ends[:, 1]
     ahead = (a[:, 2] > NEAR_M) | (b[:, 2] > NEAR_M)
     a, b = a[ahead].copy(), b[ahead].copy()
@@ -119,4 +116,8 @@ def _fragments(
     cover = np.clip(width_px / 2 + 0.5 - away, 0, 1)
     height, width = view.shape
     seen = (cover > 0) & (column >= 0) & (column < width) & (row >= 0) & (row < height)
-    return (row * width + column)[seen], cover[seen], np.broadcast_to(depth[:, None], seen.shape)[seen]
+    return (
+        (row * width + column)[seen],
+        cover[seen],
+        np.broadcast_to(depth[:, None], seen.shape)[seen],
+    )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from itertools import combinations, product
 
 import numpy as np
@@ -50,7 +49,8 @@ WHITE_PERCENTILE, WHITE_VALUE = 97.0, 0.9
 FOV_DEGREES = 32.0
 SLANT = (0.30, 0.46, 1.0)
 # Share of the picture that a fitted view fills, in how many steps, and how near it may come.
-FILLED, FIT_STEPS, NEAREST_EYE_M = 0.92, 12, 0.5
+FILLED, FIT_STEPS, NEAREST_EYE_M = 0.88, 12, 0.5
+DEFAULT = Look()
 # Sample directions for the exposure: corners, edges and faces of a cube.
 _SIDES = np.array([d for d in product((-1.0, 0.0, 1.0), repeat=3) if any(d)])
 SIDES = _SIDES / np.linalg.norm(_SIDES, axis=1, keepdims=True)
@@ -113,7 +113,7 @@ def _fitted(
 def probe_picture(
     volume: ProbeVolume,
     view: View,
-    look: Look = Look(),  # noqa: B008: frozen
+    look: Look = DEFAULT,
     /,
     *,
     geometry: Geometry | None = None,
@@ -144,9 +144,7 @@ def probe_picture(
     if "balls" in look.parts:
         rings = [_linear(ROLES[role]) for role in volume.roles]
         radius = look.radius_m or _radius(volume.positions)
-        draw_balls(
-            canvas, volume.positions, radius, light, rings, irradiance=look.irradiance
-        )
+        draw_balls(canvas, volume.positions, radius, light, rings, irradiance=look.irradiance)
     _draw_lines(canvas, volume, look)
     height, width = view.shape
     tiles = canvas.colour.reshape(height, OVERSAMPLING, width, OVERSAMPLING, 3)
@@ -233,8 +231,8 @@ def _box_edges(box: Float) -> Float:
     pairs = [
         (a, b) for a, b in combinations(range(8), 2) if np.abs(corners[a] - corners[b]).sum() == 1
     ]
-    places = np.where(corners == 0, box[0], box[1])
-    return places[np.array(pairs)]
+    places = box[0] + corners * (box[1] - box[0])
+    return np.asarray(places[np.array(pairs)], np.float64)
 
 
 def _entries(volume: ProbeVolume, look: Look) -> list[Entry]:
@@ -266,7 +264,9 @@ def _note(volume: ProbeVolume, white: float, look: Look, caption: str) -> str:
     if volume.states:
         what = "irradiance/pi" if look.irradiance else "luminance that arrives"
         unit = "cd/m2" if volume.photometry == "absolute" else "cd/m2, relative"
-        parts.append(f"balls: {what} from where they face; white is {float(f'{white:.3g}'):g} {unit}")
+        parts.append(
+            f"balls: {what} from where they face; white is {float(f'{white:.3g}'):g} {unit}"
+        )
     elif "balls" in look.parts:
         parts.append("no light captured yet")
     if volume.cells is None:

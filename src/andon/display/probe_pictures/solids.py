@@ -122,7 +122,8 @@ def draw_balls(
     places = transform_points(canvas.view.camera_from_world, positions)
     for index in np.argsort(-places[:, 2]).tolist():
         one = None if light is None else light[index]
-        _draw_ball(canvas, places[index], radius_m, one, rings[index], irradiance)
+        ring: Colour = rings[int(index)]
+        _draw_ball(canvas, places[index], radius_m, one, ring, irradiance)
 
 
 def _draw_ball(

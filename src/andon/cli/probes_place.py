@@ -1,4 +1,4 @@
-"""``andon probes place`` and ``andon probes show``: where probes are, before and after a bake."""
+"""``andon probes place``: where the probes of a scene go."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from andon.scene import Scene
     from andon.transport.probes.placement import Placed
 
-__all__ = ["place", "scene_geometry", "show"]
+__all__ = ["place", "scene_geometry"]
 
 # A list on the terminal: what is longer is read from the file.
 SHOWN_NAMES = 8
@@ -131,7 +131,3 @@ def _write(placed: Placed, out: Path, scene: Path) -> None:
     )
     text = toml_text({"probes": {"place": place_tables(placed)}})
     write_bytes(out, (head + "\n" + text).encode())
-
-
-def show() -> None:
-    """Draw a probe volume."""

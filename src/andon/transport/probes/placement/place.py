@@ -216,7 +216,8 @@ def _warnings(
     if tally.merged:
         names = _listed([entry.name for entry in left_out])
         found.append(
-            f"{_probes(tally.merged)} within {SAME_PLACE_M * 1e3:g} mm of another, left out: {names}"
+            f"{_probes(tally.merged)} within {SAME_PLACE_M * 1e3:g} mm of another, left out: "
+            f"{names}"
         )
     if tally.in_walls:
         found.append(
@@ -232,10 +233,10 @@ def _warnings(
             f"only {made} of {probes.placement.count} random probes have room: "
             f"{tally.crowded} places were too near to one, {tally.dropped_in_walls} in walls"
         )
-    crowded, turned = winding_faults(geometry)
-    if crowded + turned:
+    odd, turned = winding_faults(geometry)
+    if odd + turned:
         found.append(
-            f"the surface has {crowded} edges of more than two triangles and {turned} whose "
+            f"the surface has {odd} edges of three triangles or more and {turned} whose "
             "triangles are wound against each other: what is inside a wall is told by majority"
         )
     return tuple(found)

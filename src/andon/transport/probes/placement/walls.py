@@ -112,10 +112,10 @@ class Walls:
 
 
 def winding_faults(geometry: Geometry, /) -> tuple[int, int]:
-    """Edges of more than two triangles, and edges whose two triangles run the same way.
+    """Edges of three, five, … triangles, and edges whose triangles are wound against each other.
 
-    Corners at one place are one, whatever a file calls them. Triangles without an area and edges
-    of one triangle (open sheets) are no fault.
+    Corners at one place are one, whatever a file calls them. Edges of one triangle (open sheets)
+    are no fault, nor are those of four where two solids touch.
     """
     if len(geometry.triangles) == 0:
         return 0, 0
@@ -131,4 +131,6 @@ def winding_faults(geometry: Geometry, /) -> tuple[int, int]:
         low * (corner.max() + 1) + high, return_inverse=True, return_counts=True
     )
     balance = np.bincount(edge.reshape(-1), np.where(starts < ends, 1, -1))
-    return int(np.count_nonzero(uses > 2)), int(np.count_nonzero((uses == 2) & (balance != 0)))
+    is_odd = uses % 2 == 1
+    odd = np.count_nonzero(is_odd & (uses > 1))
+    return int(odd), int(np.count_nonzero(~is_odd & (balance != 0)))

@@ -35,7 +35,8 @@ def directions_of(places: Float, /) -> Float:
     z = 1 - np.abs(places).sum(axis=-1, keepdims=True)
     folded = (1 - np.abs(places[..., ::-1])) * np.where(places >= 0, 1.0, -1.0)
     direction = np.concatenate([np.where(z >= 0, places, folded), z], axis=-1)
-    return direction / np.linalg.norm(direction, axis=-1, keepdims=True)
+    length: Float = np.linalg.norm(direction, axis=-1, keepdims=True)
+    return direction / length
 
 
 def bilinear_taps(directions: Float, side: int, /) -> tuple[NDArray[np.int64], Float]:

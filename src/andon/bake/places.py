@@ -59,9 +59,10 @@ def zones_of(probes: Probes, placed: Placed, file: str, /) -> tuple[Zone, ...]:
 
 def _inside(boxes: Float | None, points: Float) -> NDArray[np.bool_]:
     assert boxes is not None
-    low, high = boxes[:, 0, None], boxes[:, 1, None]
-    within: NDArray[np.bool_] = ((points >= low) & (points <= high)).all(axis=-1)
-    return np.asarray(within.any(axis=0), np.bool_)
+    inside = np.zeros(len(points), bool)
+    for low, high in boxes:
+        inside |= ((points >= low) & (points <= high)).all(axis=1)
+    return inside
 
 
 def far_m(placed: Placed, cells: Cells, geometry: Sequence[Geometry], /) -> float:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import typer
 
+from andon.cli import probes_place
+
 __all__ = ["probes_app"]
 
 probes_app = typer.Typer()
@@ -21,3 +23,4 @@ def _probes(context: typer.Context) -> None:
 
 
 # In the order of ``andon probes --help``.
+probes_app.command("place")(probes_place.place)

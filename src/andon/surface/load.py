@@ -26,7 +26,13 @@ from andon.surface.occluder import decimated
 from andon.surface.textures import with_linear_textures
 from andon.surface.triangulate import thickened, triangulate_depth
 
-__all__ = ["load_surface", "object_geometry", "surface_of_depth", "surface_of_mesh"]
+__all__ = [
+    "load_surface",
+    "mesh_geometry",
+    "object_geometry",
+    "surface_of_depth",
+    "surface_of_mesh",
+]
 
 Float = NDArray[np.float64]
 
@@ -173,7 +179,8 @@ def surface_of_mesh(
     return SurfaceModel(real, occluder=occluder, bias=_bias(bias))
 
 
-def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
+def mesh_geometry(scene: Scene, /) -> tuple[Geometry, tuple[str, ...]]:
+    """The triangles of ``surface.mesh`` in the world, and what is to be said of them."""
     assert scene.surface is not None
     assert scene.surface.mesh is not None
     path = scene.path(scene.surface.mesh, "surface.mesh")
@@ -184,6 +191,12 @@ def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
     if scene.surface.reflectance is not None:
         real = _with_reflectance(real, scene.surface.reflectance)
     _check_textures(real, scene, "surface.mesh")
+    return real, notes
+
+
+def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
+    assert scene.surface is not None
+    real, notes = mesh_geometry(scene)
     budget = scene.surface.occluder_triangles
     model = surface_of_mesh(real, view.position, occluder_triangles=budget)
     return replace(model, notes=notes)

@@ -11,6 +11,7 @@ module          idea
 `buffers`       bytes → arrays: views, strides, sparse, normalised, data URIs
 `materials`     metallic-roughness → `Material`, textures, emission in cd/m²
 `nodes`         the tree of transforms, and the lights in it
+`locators`      named nodes as places, read and written
 `primitives`    triangles, strips and fans, placed, mirrored and skinned
 =============== ==============================================================
 
@@ -29,6 +30,7 @@ from andon.files.limits import DEFAULT_LIMITS, Limits, check_at_most
 from andon.files.meshes.assemble import check_geometry, concatenate, unit_normals
 from andon.files.meshes.gltf.buffers import BufferStore
 from andon.files.meshes.gltf.container import Document, open_document
+from andon.files.meshes.gltf.locators import GltfNode, read_gltf_nodes, write_gltf_nodes
 from andon.files.meshes.gltf.materials import MaterialReader, TextureUse
 from andon.files.meshes.gltf.nodes import PlacedNode, place_nodes, read_light
 from andon.files.meshes.gltf.primitives import (
@@ -41,7 +43,7 @@ from andon.files.meshes.model import MeshFile, MeshLight
 from andon.files.tree import Tree
 from andon.quantities import Geometry, Material
 
-__all__ = ["read_gltf", "read_gltf_lights"]
+__all__ = ["GltfNode", "read_gltf", "read_gltf_lights", "read_gltf_nodes", "write_gltf_nodes"]
 
 # glTF 2.0, 3.7.2.1: a primitive without material has the values of an empty one.
 DEFAULT_MATERIAL = Material("default", (1.0, 1.0, 1.0), metallic=1.0, two_sided=False)

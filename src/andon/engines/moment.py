@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
 
 from andon.lamps import Body, Lamp
 
@@ -18,8 +21,11 @@ class Moment:
     time_seconds : since the start of the session.
     lamps : always the same names and kinds.
     bodies : luminous bodies; always the same names and triangles.
+    object_middles : (n, 3) metres, world: the middle of the bounding box of each virtual object,
+        in the order of `SurfaceModel.objects_table`.
     """
 
     time_seconds: float = 0.0
     lamps: tuple[Lamp, ...] = ()
     bodies: tuple[Body, ...] = ()
+    object_middles: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 3)))

@@ -81,7 +81,12 @@ class Prepared:
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
-        return Moment(time_seconds, self.lamps(time_seconds), self.bodies(time_seconds))
+        return Moment(
+            time_seconds,
+            self.lamps(time_seconds),
+            self.bodies(time_seconds),
+            self.surface.object_middles,
+        )
 
     def casters(self, moment: Moment) -> Casters:
         """What casts shadows at a moment."""

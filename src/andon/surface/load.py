@@ -15,12 +15,12 @@ from andon.files.depth import read_depth_array
 from andon.files.meshes import read_mesh
 from andon.files.pictures import read_picture
 from andon.lenses import undistort
-from andon.quantities import Geometry, Material, merged
+from andon.quantities import MAX_OBJECT_MATERIALS, Geometry, Material, merged
 from andon.rays import face_normals
 from andon.scene import Scene
 from andon.spaces import View, rotate, transform_points
 from andon.surface.depth import DepthEncoding, depth_from_raw
-from andon.surface.model import EMPTY_GEOMETRY, ShadowBias, SurfaceModel
+from andon.surface.model import EMPTY_GEOMETRY, ObjectInfo, ShadowBias, SurfaceModel
 from andon.surface.normals import normals_from_depth
 from andon.surface.occluder import decimated
 from andon.surface.textures import with_linear_textures
@@ -48,10 +48,8 @@ MESH_BIAS_M = 2e-4
 DEPTH_BIAS_M = 5e-3
 DECIMATION_MARGIN = 2.0
 
-# An array texture has at least 256 layers on every adapter (WebGPU, table of limits), and the
-# emission of virtual objects is looked up among 256 materials, of which the last serves all beyond.
+# An array texture has at least 256 layers on every adapter (WebGPU, table of limits).
 MAX_TEXTURES = 256
-MAX_EMITTING = 255
 
 # Camera axes of a file's normals → our camera frame (x right, y down, z forward).
 NORMAL_AXES = {"opencv": np.eye(3), "opengl": np.diag([1.0, -1.0, -1.0])}
@@ -94,7 +92,7 @@ def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
         model,
         objects=objects.objects,
         casters=objects.casters,
-        object_triangles=objects.object_triangles,
+        objects_table=objects.objects_table,
         notes=(*model.notes, *objects.notes),
     )
 
@@ -273,38 +271,34 @@ def _objects(scene: Scene) -> SurfaceModel:
     if not parts:
         return SurfaceModel()
     casting = [p for p, entry in zip(parts, scene.object, strict=True) if entry.casts_shadow]
-    objects = _emitting_first(joined(parts))
+    objects = joined(parts)
     _check_textures(objects, scene, "object")
-    emitting = sum(any(material.emissive_cd_m2) for material in objects.materials)
-    if emitting > MAX_EMITTING:
-        raise InputError(
-            f"{emitting} materials of virtual objects emit light, at most {MAX_EMITTING} can",
-            file=scene.file,
-            field="object",
-            remedy="let parts share materials, or leave objects out",
-        )
-    names = [
-        entry.name if "name" in entry.model_fields_set else f"object[{index}]"
-        for index, entry in enumerate(scene.object)
-    ]
     return SurfaceModel(
         objects=objects,
         casters=merged(*casting) if casting else EMPTY_GEOMETRY,
-        object_triangles=tuple(
-            (name, len(part.triangles)) for name, part in zip(names, parts, strict=True)
-        ),
+        objects_table=_objects_table(scene, parts),
         # One file may stand in several places.
         notes=tuple(dict.fromkeys(note for _, notes in read for note in notes)),
     )
 
 
-def _emitting_first(geometry: Geometry) -> Geometry:
-    """The same geometry, its materials that emit before all others."""
-    emits = np.array([any(material.emissive_cd_m2) for material in geometry.materials])
-    order: list[int] = np.argsort(~emits, kind="stable").tolist()
-    ids = np.argsort(order)[geometry.material_ids].astype(np.int32)
-    materials = tuple(geometry.materials[index] for index in order)
-    return replace(geometry, material_ids=ids, materials=materials)
+def _objects_table(scene: Scene, parts: list[Geometry]) -> tuple[ObjectInfo, ...]:
+    """Which slots each object has; refuses more than there are."""
+    starts = np.cumsum([0, *(len(part.materials) for part in parts)]).tolist()
+    if starts[-1] > MAX_OBJECT_MATERIALS:
+        raise InputError(
+            f"virtual objects have {starts[-1]} materials, at most {MAX_OBJECT_MATERIALS} can be "
+            "told apart",
+            file=scene.file,
+            field="object",
+            remedy="let parts share materials, or leave objects out",
+        )
+    table: list[ObjectInfo] = []
+    for index, (entry, part) in enumerate(zip(scene.object, parts, strict=True)):
+        name = entry.name if "name" in entry.model_fields_set else f"object[{index}]"
+        own = (starts[index], len(part.materials), len(part.triangles))
+        table.append(ObjectInfo(name, *own, entry.lit_by_probes, entry.lit_by_lamps))
+    return tuple(table)
 
 
 def _check_textures(geometry: Geometry, scene: Scene, field: str) -> None:

@@ -1,4 +1,4 @@
-"""Makes examples/basic/walker.glb: a mannequin of 1.75 m that walks on the spot, one second a cycle.
+"""Makes examples/basic/walker.glb: a mannequin of 1.75 m that walks on the spot.
 
     PYTHONPATH=tools python tools/make_walker.py examples/basic
 
@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 from glb import INDICES, VERTICES, Glb
-
 from walker.bones import NAMES, REST, parent_of
 from walker.gait import gait
 from walker.skin import skin

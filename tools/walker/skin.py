@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -142,7 +143,7 @@ def _bound(heights: Float, names: list[str]) -> tuple[Int, Float]:
     joints = np.zeros((len(heights), 4), np.int64)
     weights = np.zeros((len(heights), 4))
     joints[:, 0], weights[:, 0] = numbers[0], 1.0
-    for above, below in zip(numbers, numbers[1:], strict=False):
+    for above, below in pairwise(numbers):
         share = np.clip((REST[below, 1] - heights) / BLEND_M / 2 + 0.5, 0, 1)
         share = share * share * (3 - 2 * share)
         mine = share > 0
@@ -161,7 +162,7 @@ def _rising(heights: Float, names: list[str]) -> tuple[Int, Float]:
     joints = np.zeros((len(heights), 4), np.int64)
     weights = np.zeros((len(heights), 4))
     joints[:, 0], weights[:, 0] = numbers[0], 1.0
-    for below, above in zip(numbers, numbers[1:], strict=False):
+    for below, above in pairwise(numbers):
         share = np.clip((heights - REST[above, 1]) / BLEND_M / 2 + 0.5, 0, 1)
         share = share * share * (3 - 2 * share)
         mine = share > 0

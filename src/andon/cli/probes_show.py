@@ -159,7 +159,7 @@ def _subject(file: Path) -> _Subject:
 def _unlit(scene: Scene, geometry: Geometry) -> ProbeVolume:
     """The volume that a bake of the scene would fill."""
     from andon.files.volumes import ProbeVolume
-    from andon.transport.probes import build_cells
+    from andon.transport.probes.cells import build_cells
     from andon.transport.probes.placement import place_probes, zones_of
 
     placed = place_probes(scene, geometry)

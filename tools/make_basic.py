@@ -80,7 +80,7 @@ def parts() -> list[tuple[str, str, Float, Float]]:
         entry("back wall", "green", (-h - t, 0, -h - t), (h + t, y, -h)),
         entry("right wall", "blue", (h, 0, -h), (h + t, y, h)),
         entry("column", "white", (-0.9, 0, -1.0), (-0.1, 2.4, -0.2)),
-        entry("block", "white", (1.6, 0, -2.9), (2.8, 0.9, -1.7)),
+        entry("block", "white", (2.2, 0, -3.5), (3.2, 0.9, -2.5)),
     ]
 
 

@@ -1,4 +1,4 @@
-"""``andon probes place`` and ``andon probes show``: where probes are, before and after a bake."""
+"""``andon probes place``: where the probes of a scene go."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from andon.cli.console import check_writable, note
+from andon.cli.console import check_writable, note, printable
 from andon.errors import InputError
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from andon.scene import Scene
     from andon.transport.probes.placement import Placed
 
-__all__ = ["place", "scene_geometry", "show"]
+__all__ = ["place", "scene_geometry"]
 
 # A list on the terminal: what is longer is read from the file.
 SHOWN_NAMES = 8
@@ -49,7 +49,7 @@ def place(
     placed = place_probes(loaded, scene_geometry(loaded))
     _print(placed)
     for warning in placed.warnings:
-        note(warning)
+        note(printable(warning))
     if out is not None:
         _write(placed, out, scene)
         print(out)
@@ -102,7 +102,7 @@ def _facts(placed: Placed) -> list[tuple[str, str]]:
     if panoramas:
         facts.append(("panoramas", f"{panoramas} of them are pictures"))
     more = ", …" if len(tally.in_walls) > SHOWN_NAMES else ""
-    names = ", ".join(tally.in_walls[:SHOWN_NAMES]) + more
+    names = printable(", ".join(tally.in_walls[:SHOWN_NAMES]) + more)
     facts += [
         ("in walls", f"{len(tally.in_walls)}: {names}" if names else "none"),
         (
@@ -131,7 +131,3 @@ def _write(placed: Placed, out: Path, scene: Path) -> None:
     )
     text = toml_text({"probes": {"place": place_tables(placed)}})
     write_bytes(out, (head + "\n" + text).encode())
-
-
-def show() -> None:
-    """Draw a probe volume."""

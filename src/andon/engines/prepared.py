@@ -10,6 +10,11 @@ from andon.composite.model import Ambient
 from andon.display.model import Exposure
 from andon.engines.checks import check_lamps
 from andon.engines.moment import Moment
+from andon.engines.photographless import (
+    ambient_without_photograph,
+    black_frames,
+    white_cd_m2,
+)
 from andon.engines.reading import (
     ambient_of,
     exposure_of,
@@ -27,6 +32,7 @@ from andon.quantities import CameraFrame, Photometry
 from andon.scene import Scene
 from andon.surface.load import load_surface
 from andon.surface.model import SurfaceModel
+from andon.surface.virtual import virtual_surface
 from andon.transport.direct.casters import OBJECTS, REAL, Casters
 
 __all__ = ["Prepared", "prepare"]
@@ -95,27 +101,18 @@ class Prepared:
         return Casters(tuple(groups))
 
 
-def prepare(scene: Scene, /) -> Prepared:
-    """Reads all that `scene` names. Raises `InputError` for whatever does not fit."""
-    pictures = read_pictures(scene)
-    views = {name: view_of(scene, name, picture) for name, picture in pictures.items()}
-    ambient = ambient_of(scene, views)
-    surface = load_surface(scene, views)
-    per_unit = luminance_per_unit_of(scene, ambient)
-    frames = {
-        name: frame_from_picture(
-            picture,
-            views[name],
-            response_of(scene, picture),
-            luminance_per_unit=per_unit,
-            file=source_of(scene, name)[0],
-        )
-        for name, picture in pictures.items()
-    }
-    eye = next(iter(frames.values())).view.position
+def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
+    """Reads all that `scene` names. Raises `InputError` for whatever does not fit.
+
+    With `drawn` False there are no frames where there is no photograph, and neither rig nor white
+    are needed: for whoever only asks for light.
+    """
     virtual = _virtual_groups(scene)
     lamps = (*resolve_lamps(scene, 0.0), *resolve_sources(scene, 0.0, virtual))
-    check_lamps(scene, lamps, surface, eye)
+    frames, ambient, surface = _seen(scene, lamps, drawn)
+    if frames:
+        eye = next(iter(frames.values())).view.position
+        check_lamps(scene, lamps, surface, eye)
     return Prepared(
         frames=frames,
         surface=surface,
@@ -131,6 +128,33 @@ def prepare(scene: Scene, /) -> Prepared:
         ignored=_ignored(scene),
         sources=tuple(table.name for table in scene.ambient.source) if scene.ambient else (),
     )
+
+
+def _seen(
+    scene: Scene, lamps: tuple[Lamp, ...], drawn: bool
+) -> tuple[dict[str, CameraFrame], Ambient, SurfaceModel]:
+    """Frames, light and surface of the photograph, or of a scene that has none."""
+    if not scene.has_photograph:
+        ambient = ambient_without_photograph(scene)
+        surface = virtual_surface(scene)
+        frames = black_frames(scene, white_cd_m2(scene, ambient, lamps)) if drawn else {}
+        return frames, ambient, surface
+    pictures = read_pictures(scene)
+    views = {name: view_of(scene, name, picture.shape) for name, picture in pictures.items()}
+    ambient = ambient_of(scene, views)
+    surface = load_surface(scene, views)
+    per_unit = luminance_per_unit_of(scene, ambient)
+    frames = {
+        name: frame_from_picture(
+            picture,
+            views[name],
+            response_of(scene, picture),
+            luminance_per_unit=per_unit,
+            file=source_of(scene, name)[0],
+        )
+        for name, picture in pictures.items()
+    }
+    return frames, ambient, surface
 
 
 def _virtual_groups(scene: Scene) -> frozenset[str]:

@@ -27,6 +27,7 @@ from andon.surface.textures import with_linear_textures
 from andon.surface.triangulate import thickened, triangulate_depth
 
 __all__ = [
+    "check_textures",
     "load_surface",
     "mesh_geometry",
     "object_geometry",
@@ -190,7 +191,7 @@ def mesh_geometry(scene: Scene, /) -> tuple[Geometry, tuple[str, ...]]:
     real, notes = _read_geometry(scene, path, world_from_mesh)
     if scene.surface.reflectance is not None:
         real = _with_reflectance(real, scene.surface.reflectance)
-    _check_textures(real, scene, "surface.mesh")
+    check_textures(real, scene, "surface.mesh")
     return real, notes
 
 
@@ -272,7 +273,7 @@ def _objects(scene: Scene) -> SurfaceModel:
         return SurfaceModel()
     casting = [p for p, entry in zip(parts, scene.object, strict=True) if entry.casts_shadow]
     objects = joined(parts)
-    _check_textures(objects, scene, "object")
+    check_textures(objects, scene, "object")
     return SurfaceModel(
         objects=objects,
         casters=merged(*casting) if casting else EMPTY_GEOMETRY,
@@ -301,7 +302,8 @@ def _objects_table(scene: Scene, parts: list[Geometry]) -> tuple[ObjectInfo, ...
     return tuple(table)
 
 
-def _check_textures(geometry: Geometry, scene: Scene, field: str) -> None:
+def check_textures(geometry: Geometry, scene: Scene, field: str) -> None:
+    """Refuses more textures than can be drawn; `field` is for the message."""
     textured = sum(material.texture is not None for material in geometry.materials)
     if textured > MAX_TEXTURES:
         raise InputError(

@@ -44,9 +44,7 @@ class GltfNode:
         return self.world_from_node[:3, 3]
 
 
-def read_gltf_nodes(
-    path: str | Path, *, limits: Limits = DEFAULT_LIMITS
-) -> tuple[GltfNode, ...]:
+def read_gltf_nodes(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> tuple[GltfNode, ...]:
     """The nodes of the scene of a .gltf or .glb file, parents before children; no mesh is read.
 
     Raises `InputError` for a file that is missing, damaged, too large, or whose nodes form a cycle

@@ -30,6 +30,7 @@ from andon.transport.probes.placement.model import Panorama, Placed, Tally
 from andon.transport.probes.placement.place import place_probes
 from andon.transport.probes.placement.walls import Sight, Walls
 from andon.transport.probes.placement.written import locators, nearest_distances_m, place_tables
+from andon.transport.probes.placement.zones import zones_of
 
 __all__ = [
     "Panorama",
@@ -41,4 +42,5 @@ __all__ = [
     "nearest_distances_m",
     "place_probes",
     "place_tables",
+    "zones_of",
 ]

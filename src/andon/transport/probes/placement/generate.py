@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,19 +34,18 @@ class Generated:
 
     positions: Float
     names: tuple[str, ...]
-    tally: Tally = Tally()
+    tally: Tally = field(default_factory=Tally)
 
 
 def box_of(placement: Placement, geometry: Geometry, file: str) -> tuple[Float, Float]:
     """Lowest and highest corner (3,) of the placement's box: its own, else the surface's."""
-    if placement.low is None or placement.high is None:
-        if len(geometry.triangles) == 0:
-            raise InputError(
-                f"kind {placement.kind!r} needs a box, and there is no surface to take it from",
-                file=file,
-                field="probes.placement",
-                remedy="give low and high, or a [surface]",
-            )
+    if (placement.low is None or placement.high is None) and len(geometry.triangles) == 0:
+        raise InputError(
+            f"kind {placement.kind!r} needs a box, and there is no surface to take it from",
+            file=file,
+            field="probes.placement",
+            remedy="give low and high, or a [surface]",
+        )
     used = geometry.positions[geometry.triangles.ravel()]
     low = used.min(axis=0) if placement.low is None else np.array(placement.low)
     high = used.max(axis=0) if placement.high is None else np.array(placement.high)

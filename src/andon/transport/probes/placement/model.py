@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,7 +79,7 @@ class Placed:
     roles: tuple[ProbeRole, ...]
     ranges_m: Float
     panoramas: tuple[Panorama | None, ...]
-    tally: Tally = Tally()
+    tally: Tally = field(default_factory=Tally)
     warnings: tuple[str, ...] = ()
 
     @property

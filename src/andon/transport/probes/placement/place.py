@@ -216,7 +216,8 @@ def _warnings(
     if tally.merged:
         names = _listed([entry.name for entry in left_out])
         found.append(
-            f"{_probes(tally.merged)} within {SAME_PLACE_M * 1e3:g} mm of another, left out: {names}"
+            f"{_probes(tally.merged)} within {SAME_PLACE_M * 1e3:g} mm of another, left out: "
+            f"{names}"
         )
     if tally.in_walls:
         found.append(

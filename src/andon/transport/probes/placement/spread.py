@@ -29,7 +29,7 @@ class Spread:
         self._cells: dict[Cell, list[tuple[float, float, float]]] = {}
 
     def _cell(self, point: Float) -> Cell:
-        # Beyond 2⁵³ cubes float64 does not tell neighbours apart; Python's integers do not overflow.
+        # Python's integers: far places over small distances overflow 64 bits.
         x, y, z = (int(v) for v in np.floor(point / self.distance).tolist())
         return x, y, z
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -75,10 +76,10 @@ def _node(name: str, position: Float, parent: int = -1) -> GltfNode:
 def nearest_distances_m(positions: Float, /) -> Float:
     """(n,) metres from each of `positions` (n, 3), n > 1, to the nearest other one."""
     try:
-        from scipy.spatial import cKDTree
+        spatial: Any = import_module("scipy.spatial")
     except ImportError as error:
         raise MachineError(
             "SciPy is not installed", remedy="pip install 'andon[probes]'"
         ) from error
-    tree: Any = cKDTree(positions)
-    return np.asarray(tree.query(positions, k=2)[0], np.float64)[:, 1]
+    distances = spatial.cKDTree(positions).query(positions, k=2)[0]
+    return np.asarray(distances, np.float64)[:, 1]

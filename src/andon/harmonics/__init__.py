@@ -11,6 +11,7 @@ from andon.harmonics.basis import (
     to_order,
 )
 from andon.harmonics.cubes import SolidAngle, cube_directions, cube_solid_angles
+from andon.harmonics.deringing import Target, deringed, heat_factors, smallest, smoothing
 from andon.harmonics.irradiance import (
     convolved,
     cosine_factors,
@@ -28,12 +29,16 @@ from andon.harmonics.panoramas import (
     nonnegative,
 )
 from andon.harmonics.projection import project_cube, project_latlong
+from andon.harmonics.rotation import rotated, rotation_matrix
+from andon.harmonics.windows import Window, window_factors, windowed
 
 __all__ = [
     "MAX_ORDER",
     "Clipped",
     "NonNegative",
     "SolidAngle",
+    "Target",
+    "Window",
     "added",
     "basis",
     "clipped",
@@ -43,6 +48,8 @@ __all__ = [
     "cube_directions",
     "cube_from_latlong",
     "cube_solid_angles",
+    "deringed",
+    "heat_factors",
     "irradiance",
     "irradiance_matrix",
     "irradiance_polynomial",
@@ -52,5 +59,11 @@ __all__ = [
     "order_of",
     "project_cube",
     "project_latlong",
+    "rotated",
+    "rotation_matrix",
+    "smallest",
+    "smoothing",
     "to_order",
+    "window_factors",
+    "windowed",
 ]

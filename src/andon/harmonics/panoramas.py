@@ -6,6 +6,7 @@ The middle of the picture is −Z, to the right is +X, up is +Y; no pose applies
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -71,13 +72,14 @@ def cube_from_latlong(
     """Cube map (6, size, size, 3) float32 of a panorama (H, 2H, 3).
 
     Each texel is the mean over `samples`² points in it, weighted by solid angle; each point is
-    bilinear in the panorama. By default as many as leave no pixel of the equator out: where the
-    panorama has fewer pixels than the cube, one.
+    bilinear in the panorama. By default as many as keep neighbours, which are farthest apart in
+    the middle of a face, within a pixel of the equator: no small sun there is lost between them.
+    Near the poles pixels are narrower: one of them alone may count for too much or too little.
     """
     check_latlong(picture)
     check_cube_size(size)
     height = picture.shape[0]
-    count = samples if samples is not None else max(1, -(-height // (2 * size)))
+    count = samples if samples is not None else ceil(2 * height / (np.pi * size))
     if count < 1:
         raise InputError(f"must be ≥ 1, got {samples}", field="samples")
     padded = _padded(picture)

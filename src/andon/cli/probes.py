@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import typer
 
-from andon.cli.probes_files import probes_info
+from andon.cli.probes_files import probes_export, probes_info
 
 __all__ = ["probes_app"]
 
@@ -24,3 +24,4 @@ def _probes(context: typer.Context) -> None:
 
 # In the order of ``andon probes --help``.
 probes_app.command("info")(probes_info)
+probes_app.command("export")(probes_export)

@@ -15,8 +15,8 @@
 @group(0) @binding(3) var captured: texture_2d<f32>;
 // Where E0 is a picture: what one lux adds.
 @group(0) @binding(4) var per_lux: texture_2d<f32>;
-// cd/m² that the materials of virtual objects emit.
-@group(0) @binding(5) var<uniform> emitted: array<vec4f, 256>;
+// cd/m² that the materials of virtual objects emit; MAX_OBJECT_MATERIALS of them.
+@group(0) @binding(5) var<uniform> emitted: array<vec4f, 4096>;
 
 fn added_lux(point: SurfacePoint) -> vec3f {
   let bias = select(direct.bias_real_m, direct.bias_object_m, (point.flags & OBJECT) != 0u);
@@ -28,7 +28,7 @@ fn added_lux(point: SurfacePoint) -> vec3f {
 const MOST: vec3f = vec3f(65504.0);
 
 fn objects(point: SurfacePoint, lux: vec3f, real: vec3f) -> vec3f {
-  let material = min((point.flags >> MATERIAL_SHIFT) & 0xffffu, 255u);
+  let material = min((point.flags >> MATERIAL_SHIFT) & 0xffffu, 4095u);
   let virtual_linear = object_linear(point.reflectance, emitted[material].xyz, lux, ambient);
   return select(real, virtual_linear, (point.flags & OBJECT) != 0u);
 }

@@ -145,17 +145,17 @@ class Renderer:
         engine, prepared = self._engine, self.prepared
         frame = prepared.frames[self._view_name(view)]
         clock = _Clock(engine.finish if timed else None)
-        lamps, bodies = prepared.lamps(time_seconds), prepared.bodies(time_seconds)
-        seen = clock.time("surface", lambda: engine.see(frame.view.name, bodies))
-        light = clock.time("direct", lambda: engine.illuminate(seen, lamps, bodies))
-        luminance = clock.time("composite", lambda: engine.compose(frame, seen, light, lamps))
+        moment = prepared.at(time_seconds)
+        seen = clock.time("surface", lambda: engine.see(frame.view.name, moment))
+        light = clock.time("direct", lambda: engine.illuminate(seen, moment))
+        luminance = clock.time("composite", lambda: engine.compose(frame, seen, light, moment))
         if prepared.glow is not None:
             composed = luminance
-            luminance = clock.time("glow", lambda: engine.glow(frame, seen, composed, lamps))
+            luminance = clock.time("glow", lambda: engine.glow(frame, seen, composed, moment))
         image = clock.time("display", lambda: engine.encode(frame, luminance))
         engine.finish()
         self.stage_seconds = clock.seconds
-        self._lamps = lamps
+        self._moment = moment
         return seen, light, luminance, image
 
     def render(self, time_seconds: float = 0.0, view: str | None = None) -> Frame:
@@ -169,7 +169,7 @@ class Renderer:
         handles = self.draw(time_seconds, view, timed=True)
         surface, illuminance, luminance, image = self._engine.read(*handles)
         captured = self.prepared.frames[self._view_name(view)]
-        bodies, filtered = self._engine.read_bodies(captured, handles[0], self._lamps)
+        bodies, filtered = self._engine.read_bodies(captured, handles[0], self._moment)
         report = self._report(captured, surface)
         return Frame(captured, surface, illuminance, luminance, image, report, bodies, filtered)
 

@@ -22,6 +22,7 @@ from andon.spaces import View
 
 __all__ = [
     "LUMINANCE_WEIGHTS",
+    "MAX_OBJECT_MATERIALS",
     "CameraFrame",
     "DisplayImage",
     "Geometry",
@@ -39,6 +40,10 @@ Photometry = Literal["absolute", "relative"]
 # Rec.709 primaries with D65 (ITU-R BT.709-6, table 1): weights of the photometric value.
 LUMINANCE_WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 LUMINANCE_WEIGHTS.flags.writeable = False
+
+# Of all virtual objects of a scene together: a table of 16 bytes a row in the 64 KiB that every
+# adapter binds as a uniform buffer (WebGPU, table of limits).
+MAX_OBJECT_MATERIALS = 4096
 
 
 def photometric(triple: NDArray[Any], /) -> NDArray[Any]:

@@ -13,9 +13,10 @@ import cv2
 import numpy as np
 from PIL import Image
 
-from andon.files import write_camera, write_exr
+from andon.files import write_camera, write_exr, write_volume
 from andon.spaces import View
 from photometry_files import ies, ldt
+from volume_files import two_rooms
 
 RNG_SEED = 7
 
@@ -302,6 +303,10 @@ def _toml(path: Path) -> None:
     write_camera(path, View("pinhole", 640, 480, 500.0, 510.0, 320.0, 240.0, (0.1, -0.2, 0, 0)))
 
 
+def _volume(path: Path) -> None:
+    write_volume(path, two_rooms())
+
+
 DEPTH = np.random.default_rng(RNG_SEED).uniform(1, 5, (5, 7))
 
 # name of the reader → how to write a small valid file at a path with the reader's suffix
@@ -325,4 +330,5 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "response.csv": _write(RESPONSE_CSV),
     "photometry.ies": _write(ies(horizontals=(0, 90, 180)).encode()),
     "photometry.ldt": _write(ldt(symmetry=2).encode()),
+    "volume.glb": _volume,
 }

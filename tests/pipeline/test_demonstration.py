@@ -33,7 +33,7 @@ def expected(prepared):
 
 def shadow_edges(prepared, surface):
     """(H, W) bool: within 2 px of where a lamp's shadow begins or ends."""
-    casters = ShadowRays(prepared.casters(()))
+    casters = ShadowRays(prepared.casters(prepared.at(0.0)))
     bias = prepared.surface.bias
     lift = np.where(surface.is_object, bias.object_m, bias.real_m)
     points = surface.position + surface.normal * lift[..., None]

@@ -212,26 +212,29 @@ def write_many_materials(path, count, picture=None):
     path.with_suffix(".mtl").write_text("\n".join(looks))
 
 
-def test_materials_that_emit_come_first(tmp_path):
-    """The GPU looks emission up among 256 materials: a lamp that comes after 300 still glows."""
+def test_objects_share_no_slots(tmp_path):
+    """Numbers of materials in the G-buffer tell whose pixel it is, also after 300 of them."""
     write_many_materials(tmp_path / "many.obj", 300)
     write_glb(tmp_path / "lamp.glb", block((1, 1, 1), (0, 0, 0)), emissive=(1.0, 0.5, 0.25))
     model = loaded(tmp_path, object=[{"mesh": "many.obj"}, {"mesh": "lamp.glb"}])
-    objects = model.objects
+    objects, (many, lamp) = model.objects, model.objects_table
+    assert (many.name, many.first_slot, many.slots, many.triangles) == ("object[0]", 0, 300, 300)
+    assert (lamp.first_slot, lamp.slots, lamp.triangles) == (300, 1, 12)
+    assert model.object_of_slot.tolist() == [0] * 300 + [1]
+    assert_agree(model.object_middles, [[150, 0.5, -3], [0, 0, 0]], atol=1e-6)
     assert len(objects.materials) == 301
-    assert any(objects.materials[0].emissive_cd_m2)
-    assert not any(any(m.emissive_cd_m2) for m in objects.materials[1:])
-    assert (objects.material_ids[300:] == 0).all()
+    assert any(objects.materials[300].emissive_cd_m2)
+    assert (objects.material_ids[300:] == 300).all()
     reds = [objects.materials[i].reflectance[0] for i in objects.material_ids[:300]]
     assert_agree(reds, np.arange(300) / 300, atol=1e-6)
 
 
-def test_too_many_materials_that_emit_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("andon.surface.load.MAX_EMITTING", 2)
+def test_too_many_materials_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("andon.surface.load.MAX_OBJECT_MATERIALS", 2)
     write_glb(tmp_path / "lamp.glb", block((1, 1, 1), (0, 0, 0)), emissive=(1.0, 0.5, 0.25))
     lamps = [{"mesh": "lamp.glb", "name": f"l{index}"} for index in range(3)]
     assert loaded(tmp_path, object=lamps[:2]).objects.materials
-    with pytest.raises(InputError, match="object: 3 materials of virtual objects emit light, at "):
+    with pytest.raises(InputError, match="object: virtual objects have 3 materials, at most 2 "):
         loaded(tmp_path, object=lamps)
 
 

@@ -25,13 +25,13 @@ def steady(renderer: Renderer) -> Callable[[], None]:
     """G-buffer, shading and composite of one frame, maps kept; without the display."""
     engine = renderer._engine  # pyright: ignore[reportPrivateUsage]
     prepared = renderer.prepared
-    lamps, bodies = prepared.lamps(0.0), prepared.bodies(0.0)
+    moment = prepared.at(0.0)
     name = renderer.view_names[0]
     frame = prepared.frames[name]
 
     def step() -> None:
-        seen = engine.see(name, bodies)
-        engine.compose(frame, seen, engine.illuminate(seen, lamps, bodies), lamps)
+        seen = engine.see(name, moment)
+        engine.compose(frame, seen, engine.illuminate(seen, moment), moment)
         engine.finish()
 
     return step
@@ -149,8 +149,8 @@ def _moved_lamp() -> Duel:
     engine = renderer._engine  # pyright: ignore[reportPrivateUsage]
 
     def move() -> None:
-        lamps = prepared.lamps(float(next(clock)))
-        engine.direct.encode(engine.encoder, lamps, prepared.casters(()))
+        moment = prepared.at(float(next(clock)))
+        engine.direct.encode(engine.encoder, moment.lamps, prepared.casters(moment))
         engine.finish()
 
     def close() -> None:

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from andon.cli.options import EngineOption, RelightOptions, takes
+from andon.cli.probes import probes_app
 
 __all__ = ["app"]
 
@@ -115,6 +116,7 @@ def bench(
     raise typer.Exit(run(tuple(names or ()), quick, json, plot))
 
 
+app.add_typer(probes_app, name="probes")
 lamp_app = typer.Typer()
 app.add_typer(lamp_app, name="lamp")
 

@@ -5,17 +5,24 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from andon.errors import InputError
-from andon.pipeline import Report
 
-__all__ = ["check_writable", "note", "print_report"]
+if TYPE_CHECKING:
+    from andon.pipeline import Report
+
+__all__ = ["check_writable", "note", "print_report", "printable"]
 
 
 def note(message: str) -> None:
     """A line on stderr that is worth reading but no failure."""
     print(f"andon: {message}", file=sys.stderr)
+
+
+def printable(text: str) -> str:
+    """A stranger's label as one line without control characters."""
+    return "".join(c if c.isprintable() else " " for c in text)[:200].strip()
 
 
 def check_writable(path: Path, suffixes: tuple[str, ...], field: str) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from andon.cli.console import check_writable
+from andon.cli.console import check_writable, printable
 from andon.errors import InputError
 
 if TYPE_CHECKING:
@@ -52,8 +52,8 @@ def _facts(distribution: Distribution) -> list[tuple[str, str]]:
     names = [plane.name for plane in main_planes(distribution)]
     horizontal, vertical = distribution.horizontal_degrees, distribution.vertical_degrees
     facts = [
-        ("name", _printable(distribution.name) or "not stated"),
-        ("maker", _printable(distribution.manufacturer) or "not stated"),
+        ("name", printable(distribution.name) or "not stated"),
+        ("maker", printable(distribution.manufacturer) or "not stated"),
         ("flux", f"{lumens:.6g} lm, integrated over the sphere"),
         ("stated", _stated(distribution, lumens)),
         ("maximum", f"{maximum_cd(distribution):.6g} cd"),
@@ -72,11 +72,6 @@ def _facts(distribution: Distribution) -> list[tuple[str, str]]:
     if distribution.tilt is not None:
         facts.append(("tilt", f"light falls to {distribution.tilt.factors.min():.0%} when tilted"))
     return facts
-
-
-def _printable(text: str) -> str:
-    """A stranger's label as one line without control characters."""
-    return "".join(c if c.isprintable() else " " for c in text)[:200].strip()
 
 
 def _stated(distribution: Distribution, lumens: float) -> str:
@@ -108,7 +103,7 @@ def _draw(distribution: Distribution, file: Path, out: Path) -> None:
 
     title = " · ".join(
         part
-        for part in map(_printable, (distribution.manufacturer, distribution.name or file.name))
+        for part in map(printable, (distribution.manufacturer, distribution.name or file.name))
         if part
     )
     facts = (

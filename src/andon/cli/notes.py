@@ -12,7 +12,6 @@ from andon.engines.prepared import Prepared
 from andon.lamps import Lamp, SpotLamp
 from andon.pipeline import Frame
 from andon.quantities import Surface
-from andon.rays import RayScene
 from andon.surface.model import SurfaceModel
 
 __all__ = ["depth_text", "notes_on", "notes_on_time"]
@@ -80,23 +79,20 @@ def _on_depth(surface: Surface) -> list[str]:
 
 def _on_objects(surface: Surface, model: SurfaceModel) -> list[str]:
     """Objects without a pixel."""
-    names = [name for name, _ in model.object_triangles]
-    if not names:
-        return []
-    ends = np.cumsum([count for _, count in model.object_triangles])
-    seen: set[int] = set()
-    if surface.is_object.any():
-        origin, directions = surface.view.rays_world()
-        rays = directions[surface.is_object]
-        hits = RayScene(model.objects).first_hits(np.broadcast_to(origin, rays.shape), rays)
-        met = hits.triangle[hits.triangle >= 0]
-        seen = set(np.searchsorted(ends, met, side="right").tolist())
+    table = model.objects_table
+    own = surface.is_object
+    if surface.body_id is not None:
+        own = own & (surface.body_id < 0)
+    seen = set(model.object_of_slot[surface.material_id[own]].tolist())
+    ends = np.cumsum([info.triangles for info in table])
     notes: list[str] = []
-    for index, name in enumerate(names):
+    for index, info in enumerate(table):
         if index not in seen:
-            part = model.objects.triangles[slice(ends[index - 1] if index else 0, ends[index])]
+            part = model.objects.triangles[ends[index] - info.triangles : ends[index]]
             where = _where(model.objects.positions[part].reshape(-1, 3), surface)
-            notes.append(f"the object {name!r} covers no pixel: {where}; check position and scale")
+            notes.append(
+                f"the object {info.name!r} covers no pixel: {where}; check position and scale"
+            )
     return notes
 
 
@@ -118,8 +114,8 @@ def _where(points: Any, surface: Surface) -> str:
 
 def _on_lamps(surface: Surface, prepared: Prepared, time_seconds: float) -> list[str]:
     """Lamps that add nothing to any pixel; those of E0 only change what is there."""
-    every, bodies = prepared.lamps(time_seconds), prepared.bodies(time_seconds)
-    lamps = [lamp for lamp in every if lamp.owner not in prepared.sources]
+    moment = prepared.at(time_seconds)
+    lamps = [lamp for lamp in moment.lamps if lamp.owner not in prepared.sources]
     if not lamps or not surface.valid.any():
         return []
     from andon.engines.reference import ReferenceEngine
@@ -129,7 +125,8 @@ def _on_lamps(surface: Surface, prepared: Prepared, time_seconds: float) -> list
     sparse = replace(surface, valid=surface.valid & ((rows + 3 * columns) % SPARSE == 0))
 
     def lights(lamp: Lamp) -> bool:
-        seen = (engine.illuminate(part, [lamp], bodies).lux for part in (sparse, surface))
+        alone = replace(moment, lamps=(lamp,))
+        seen = (engine.illuminate(part, alone).lux for part in (sparse, surface))
         return any(bool((lux > 0).any()) for lux in seen)
 
     parts: dict[str, list[Lamp]] = {}

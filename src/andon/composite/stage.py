@@ -12,12 +12,10 @@ from andon.composite.model import Ambient
 from andon.composite.records import AMBIENT_RECORD, STRUCTS, pack_ambient
 from andon.gpu.device import Gpu
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
-from andon.quantities import CameraFrame
+from andon.quantities import MAX_OBJECT_MATERIALS, CameraFrame
 from andon.spaces import View
 
 __all__ = ["STRUCTS", "CompositeStage"]
-
-MAX_MATERIALS = 256
 
 
 class CompositeStage:
@@ -47,9 +45,9 @@ class CompositeStage:
         # 1/E0 of a dark corner and of the sun are five decades apart: too many for half floats.
         self._per_lux = make_texture(gpu, "rgba32float", *per_lux, label="per lux")
         self._ambient = uniform_buffer(gpu, AMBIENT_RECORD.dtype.itemsize, "ambient")
-        self._emitted = uniform_buffer(gpu, 16 * MAX_MATERIALS, "emitted")
-        table = np.zeros((MAX_MATERIALS, 4), np.float32)
-        table[: len(emitted_cd_m2), :3] = emitted_cd_m2[:MAX_MATERIALS]
+        self._emitted = uniform_buffer(gpu, 16 * MAX_OBJECT_MATERIALS, "emitted")
+        table = np.zeros((MAX_OBJECT_MATERIALS, 4), np.float32)
+        table[: len(emitted_cd_m2), :3] = emitted_cd_m2
         write_buffer(gpu, self._emitted, table)
         self.resources: dict[int, tuple[str, Any]] = {
             2: ("uniform", self._ambient),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,14 +9,13 @@ import numpy as np
 from andon import gbuffer
 from andon.composite import stage as composite
 from andon.display.stage import DisplayStage
+from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.glow.stage import GlowStage
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import open_gpu
 from andon.gpu.passes import FullscreenPass
 from andon.gpu.textures import Texture, make_texture
-from andon.lamps import Lamp
-from andon.lamps.bodies import Body
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface.stage import GpuSurface, SurfaceStage
 from andon.transport.direct import stage as direct
@@ -36,7 +34,7 @@ class _View:
         self.frame = frame
         self.has_lamps = False
         view = frame.view
-        self.surface = SurfaceStage(gpu, prepared.surface, view, engine.bodies)
+        self.surface = SurfaceStage(gpu, prepared.surface, view, engine.start.bodies)
         seen = self.surface.surface
         self.composite = composite.CompositeStage(
             gpu,
@@ -93,12 +91,12 @@ class GpuEngine:
         self.adapter = self.gpu.adapter_name
         self.prepared = prepared
         bias = prepared.surface.bias
-        self.bodies = prepared.bodies(0.0)
+        self.start = prepared.at(0.0)
         self.direct = direct.DirectStage(
             self.gpu,
-            prepared.casters(self.bodies),
-            prepared.lamps(0.0),
-            [body.name for body in self.bodies],
+            prepared.casters(self.start),
+            self.start.lamps,
+            [body.name for body in self.start.bodies],
             bias_real_m=bias.real_m,
             bias_object_m=bias.object_m,
         )
@@ -113,28 +111,28 @@ class GpuEngine:
             self._encoder = self.gpu.device.create_command_encoder(label="frame")
         return self._encoder
 
-    def see(self, view_name: str, bodies: Sequence[Body]) -> GpuSurface:
+    def see(self, view_name: str, moment: Moment) -> GpuSurface:
         """Records the drawing of the G-buffer."""
-        return self._views[view_name].surface.encode(self.encoder, bodies)
+        return self._views[view_name].surface.encode(self.encoder, moment.bodies)
 
-    def illuminate(self, seen: GpuSurface, lamps: Sequence[Lamp], bodies: Sequence[Body]) -> _View:
+    def illuminate(self, seen: GpuSurface, moment: Moment) -> _View:
         """Brings shadow maps and lamps up to date; shared by both eyes."""
-        casters = self.prepared.casters(bodies)
-        self.maps_redrawn = self.direct.encode(self.encoder, lamps, casters)
+        casters = self.prepared.casters(moment)
+        self.maps_redrawn = self.direct.encode(self.encoder, moment.lamps, casters)
         return self._views[seen.view.name]
 
     def compose(
-        self, frame: CameraFrame, seen: GpuSurface, light: _View, lamps: Sequence[Lamp]
+        self, frame: CameraFrame, seen: GpuSurface, light: _View, moment: Moment
     ) -> Texture:
         """Records direct light and composite in one pass, then the visible lamps."""
         light.relit.encode(self.encoder, [light.luminance.view])
         light.has_lamps = light.composite.lamps.encode(
-            self.encoder, light.luminance.view, seen, lamps, frame.luminance_per_unit
+            self.encoder, light.luminance.view, seen, moment.lamps, frame.luminance_per_unit
         )
         return light.luminance
 
     def glow(
-        self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, lamps: Sequence[Lamp]
+        self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, moment: Moment
     ) -> Texture:
         """Records the scattering of the bodies' light around them."""
         view = self._views[frame.view.name]
@@ -171,7 +169,7 @@ class GpuEngine:
         return surface, Illuminance(lux, word), self._cd_m2(luminance, light.frame), image.read()
 
     def read_bodies(
-        self, frame: CameraFrame, seen: GpuSurface, lamps: Sequence[Lamp]
+        self, frame: CameraFrame, seen: GpuSurface, moment: Moment
     ) -> tuple[Luminance | None, Luminance | None]:
         """Luminous bodies alone, and as the glow filters them; for figures, not for frames."""
         view = self._views[frame.view.name]

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite import reference as composite
 from andon.display import reference as display
+from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.glow import reference as glow
-from andon.lamps import Lamp
-from andon.lamps.bodies import Body
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface import reference as surface
 from andon.transport.direct import reference as direct
@@ -30,45 +27,43 @@ class ReferenceEngine:
     def __init__(self, prepared: Prepared) -> None:
         self.prepared = prepared
         self._surfaces: dict[str, Surface] = {}
-        self._rays = ShadowRays(prepared.casters(()))
+        self._rays = ShadowRays(prepared.casters(Moment()))
         self.maps_redrawn = 0
 
-    def see(self, view_name: str, bodies: Sequence[Body]) -> Surface:
+    def see(self, view_name: str, moment: Moment) -> Surface:
         """The surface of a view; made once, but for bodies, since all else stands still."""
         if view_name not in self._surfaces:
             view = self.prepared.frames[view_name].view
             self._surfaces[view_name] = surface.see(self.prepared.surface, view)
-        return surface.with_bodies(self._surfaces[view_name], bodies)
+        return surface.with_bodies(self._surfaces[view_name], moment.bodies)
 
-    def illuminate(
-        self, seen: Surface, lamps: Sequence[Lamp], bodies: Sequence[Body]
-    ) -> Illuminance:
+    def illuminate(self, seen: Surface, moment: Moment) -> Illuminance:
         """Direct light of all lamps on the surface."""
-        casters = self.prepared.casters(bodies)
+        casters = self.prepared.casters(moment)
         if casters.version(()) != self._rays.casters.version(()):
             self._rays = ShadowRays(casters)
         bias = self.prepared.surface.bias
         bias_m: NDArray[np.float64] = np.where(seen.is_object, bias.object_m, bias.real_m)
-        names = [body.name for body in bodies]
-        lux = direct.illuminate(seen, lamps, self._rays, bias_m=bias_m, bodies=names)
+        names = [body.name for body in moment.bodies]
+        lux = direct.illuminate(seen, moment.lamps, self._rays, bias_m=bias_m, bodies=names)
         return Illuminance(lux, self.prepared.photometry)
 
     def compose(
-        self, frame: CameraFrame, seen: Surface, light: Illuminance, lamps: Sequence[Lamp]
+        self, frame: CameraFrame, seen: Surface, light: Illuminance, moment: Moment
     ) -> Luminance:
         """The photograph under its new light, with objects and lamps in it."""
         luminance = composite.compose(
-            frame, seen, self.prepared.ambient, np.asarray(light.lux, np.float64), lamps
+            frame, seen, self.prepared.ambient, np.asarray(light.lux, np.float64), moment.lamps
         )
         return Luminance(luminance, self.prepared.photometry)
 
     def glow(
-        self, frame: CameraFrame, seen: Surface, luminance: Luminance, lamps: Sequence[Lamp]
+        self, frame: CameraFrame, seen: Surface, luminance: Luminance, moment: Moment
     ) -> Luminance:
         """The picture with the light of luminous bodies scattered around them."""
         if self.prepared.glow is None:
             return luminance
-        bodies = composite.bodies_luminance(seen, lamps)
+        bodies = composite.bodies_luminance(seen, moment.lamps)
         cd_m2 = glow.add_glow(luminance.cd_m2, bodies, self.prepared.glow, frame.view)
         return Luminance(cd_m2, self.prepared.photometry)
 
@@ -89,10 +84,10 @@ class ReferenceEngine:
         return seen, light, luminance, image
 
     def read_bodies(
-        self, frame: CameraFrame, seen: Surface, lamps: Sequence[Lamp]
+        self, frame: CameraFrame, seen: Surface, moment: Moment
     ) -> tuple[Luminance | None, Luminance | None]:
         """Luminous bodies alone, and as the glow filters them."""
-        alone = composite.bodies_luminance(seen, lamps)
+        alone = composite.bodies_luminance(seen, moment.lamps)
         if not alone.any():
             return None, None
         word, settings = self.prepared.photometry, self.prepared.glow

@@ -30,6 +30,7 @@ from andon.files.pictures import (
 )
 from andon.files.reader import Reader
 from andon.files.registry import READERS, reader_for
+from andon.files.volumes import ProbeVolume, read_volume, write_volume
 
 __all__ = [
     "DEFAULT_LIMITS",
@@ -39,6 +40,7 @@ __all__ = [
     "MeshFile",
     "MeshLight",
     "Picture",
+    "ProbeVolume",
     "Reader",
     "camera_from_table",
     "confined",
@@ -49,6 +51,7 @@ __all__ = [
     "read_mesh",
     "read_photometry",
     "read_picture",
+    "read_volume",
     "reader_for",
     "write_camera",
     "write_exr",
@@ -56,4 +59,5 @@ __all__ = [
     "write_npy",
     "write_picture",
     "write_png",
+    "write_volume",
 ]

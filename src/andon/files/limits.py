@@ -32,6 +32,7 @@ class Limits:
     max_camera_bytes : 1 MiB; a calibration with all its views has about 100 kB.
     max_vertices : 2²⁴, 1 GiB with normals and texture coordinates in float64.
     max_triangles : 2²⁴, the most that an Embree scene of a few GiB holds.
+    max_probes : 2¹⁷ light probes in a volume; a lattice of 50 a side has 125,000.
     max_nodes : 5·10⁵ tables and lists of JSON or YAML, and as many nodes, primitives or materials;
         large exports have some 10⁴ nodes with four lists each.
     max_depth : 64 levels of nesting; Python's own parsers give up at about 1000.
@@ -48,6 +49,7 @@ class Limits:
     max_camera_bytes: int = 2**20
     max_vertices: int = 2**24
     max_triangles: int = 2**24
+    max_probes: int = 2**17
     max_nodes: int = 500_000
     max_depth: int = 64
     max_references: int = 1024

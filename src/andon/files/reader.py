@@ -27,8 +27,8 @@ class Reader:
 
     Attributes
     ----------
-    name : ``kind.format``; the kind is ``picture``, ``depth``, ``mesh``, ``camera``, ``response``
-        or ``photometry``.
+    name : ``kind.format``; the kind is ``picture``, ``depth``, ``mesh``, ``camera``, ``response``,
+        ``photometry`` or ``volume``.
     suffixes : lower case, with the dot.
     read : the function that reads it.
     """

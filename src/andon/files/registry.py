@@ -16,10 +16,11 @@ from andon.files.photometry import PHOTOMETRY_READERS
 from andon.files.pictures import PICTURE_READERS
 from andon.files.reader import Reader, choose_reader
 from andon.files.responses import RESPONSE_READERS
+from andon.files.volumes import VOLUME_READERS
 
 __all__ = ["READERS", "Kind", "reader_for"]
 
-Kind = Literal["picture", "depth", "mesh", "camera", "response", "photometry"]
+Kind = Literal["picture", "depth", "mesh", "camera", "response", "photometry", "volume"]
 
 READERS: tuple[Reader, ...] = (
     *PICTURE_READERS,
@@ -28,6 +29,7 @@ READERS: tuple[Reader, ...] = (
     *CAMERA_READERS,
     *RESPONSE_READERS,
     *PHOTOMETRY_READERS,
+    *VOLUME_READERS,
 )
 
 

@@ -15,18 +15,25 @@ from andon.files.depth import read_depth_array
 from andon.files.meshes import read_mesh
 from andon.files.pictures import read_picture
 from andon.lenses import undistort
-from andon.quantities import Geometry, Material, merged
+from andon.quantities import MAX_OBJECT_MATERIALS, Geometry, Material, merged
 from andon.rays import face_normals
 from andon.scene import Scene
 from andon.spaces import View, rotate, transform_points
 from andon.surface.depth import DepthEncoding, depth_from_raw
-from andon.surface.model import EMPTY_GEOMETRY, ShadowBias, SurfaceModel
+from andon.surface.model import EMPTY_GEOMETRY, ObjectInfo, ShadowBias, SurfaceModel
 from andon.surface.normals import normals_from_depth
 from andon.surface.occluder import decimated
 from andon.surface.textures import with_linear_textures
 from andon.surface.triangulate import thickened, triangulate_depth
 
-__all__ = ["load_surface", "object_geometry", "surface_of_depth", "surface_of_mesh"]
+__all__ = [
+    "check_textures",
+    "load_surface",
+    "mesh_geometry",
+    "object_geometry",
+    "surface_of_depth",
+    "surface_of_mesh",
+]
 
 Float = NDArray[np.float64]
 
@@ -42,10 +49,8 @@ MESH_BIAS_M = 2e-4
 DEPTH_BIAS_M = 5e-3
 DECIMATION_MARGIN = 2.0
 
-# An array texture has at least 256 layers on every adapter (WebGPU, table of limits), and the
-# emission of virtual objects is looked up among 256 materials, of which the last serves all beyond.
+# An array texture has at least 256 layers on every adapter (WebGPU, table of limits).
 MAX_TEXTURES = 256
-MAX_EMITTING = 255
 
 # Camera axes of a file's normals → our camera frame (x right, y down, z forward).
 NORMAL_AXES = {"opencv": np.eye(3), "opengl": np.diag([1.0, -1.0, -1.0])}
@@ -88,7 +93,7 @@ def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
         model,
         objects=objects.objects,
         casters=objects.casters,
-        object_triangles=objects.object_triangles,
+        objects_table=objects.objects_table,
         notes=(*model.notes, *objects.notes),
     )
 
@@ -175,7 +180,8 @@ def surface_of_mesh(
     return SurfaceModel(real, occluder=occluder, bias=_bias(bias))
 
 
-def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
+def mesh_geometry(scene: Scene, /) -> tuple[Geometry, tuple[str, ...]]:
+    """The triangles of ``surface.mesh`` in the world, and what is to be said of them."""
     assert scene.surface is not None
     assert scene.surface.mesh is not None
     path = scene.path(scene.surface.mesh, "surface.mesh")
@@ -185,7 +191,13 @@ def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
     real, notes = _read_geometry(scene, path, world_from_mesh)
     if scene.surface.reflectance is not None:
         real = _with_reflectance(real, scene.surface.reflectance)
-    _check_textures(real, scene, "surface.mesh")
+    check_textures(real, scene, "surface.mesh")
+    return real, notes
+
+
+def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
+    assert scene.surface is not None
+    real, notes = mesh_geometry(scene)
     budget = scene.surface.occluder_triangles
     model = surface_of_mesh(real, view.position, occluder_triangles=budget)
     return replace(model, notes=notes)
@@ -260,41 +272,38 @@ def _objects(scene: Scene) -> SurfaceModel:
     if not parts:
         return SurfaceModel()
     casting = [p for p, entry in zip(parts, scene.object, strict=True) if entry.casts_shadow]
-    objects = _emitting_first(joined(parts))
-    _check_textures(objects, scene, "object")
-    emitting = sum(any(material.emissive_cd_m2) for material in objects.materials)
-    if emitting > MAX_EMITTING:
-        raise InputError(
-            f"{emitting} materials of virtual objects emit light, at most {MAX_EMITTING} can",
-            file=scene.file,
-            field="object",
-            remedy="let parts share materials, or leave objects out",
-        )
-    names = [
-        entry.name if "name" in entry.model_fields_set else f"object[{index}]"
-        for index, entry in enumerate(scene.object)
-    ]
+    objects = joined(parts)
+    check_textures(objects, scene, "object")
     return SurfaceModel(
         objects=objects,
         casters=merged(*casting) if casting else EMPTY_GEOMETRY,
-        object_triangles=tuple(
-            (name, len(part.triangles)) for name, part in zip(names, parts, strict=True)
-        ),
+        objects_table=_objects_table(scene, parts),
         # One file may stand in several places.
         notes=tuple(dict.fromkeys(note for _, notes in read for note in notes)),
     )
 
 
-def _emitting_first(geometry: Geometry) -> Geometry:
-    """The same geometry, its materials that emit before all others."""
-    emits = np.array([any(material.emissive_cd_m2) for material in geometry.materials])
-    order: list[int] = np.argsort(~emits, kind="stable").tolist()
-    ids = np.argsort(order)[geometry.material_ids].astype(np.int32)
-    materials = tuple(geometry.materials[index] for index in order)
-    return replace(geometry, material_ids=ids, materials=materials)
+def _objects_table(scene: Scene, parts: list[Geometry]) -> tuple[ObjectInfo, ...]:
+    """Which slots each object has; refuses more than there are."""
+    starts = np.cumsum([0, *(len(part.materials) for part in parts)]).tolist()
+    if starts[-1] > MAX_OBJECT_MATERIALS:
+        raise InputError(
+            f"virtual objects have {starts[-1]} materials, at most {MAX_OBJECT_MATERIALS} can be "
+            "told apart",
+            file=scene.file,
+            field="object",
+            remedy="let parts share materials, or leave objects out",
+        )
+    table: list[ObjectInfo] = []
+    for index, (entry, part) in enumerate(zip(scene.object, parts, strict=True)):
+        name = entry.name if "name" in entry.model_fields_set else f"object[{index}]"
+        own = (starts[index], len(part.materials), len(part.triangles))
+        table.append(ObjectInfo(name, *own, entry.lit_by_probes, entry.lit_by_lamps))
+    return tuple(table)
 
 
-def _check_textures(geometry: Geometry, scene: Scene, field: str) -> None:
+def check_textures(geometry: Geometry, scene: Scene, field: str) -> None:
+    """Refuses more textures than can be drawn; `field` is for the message."""
     textured = sum(material.texture is not None for material in geometry.materials)
     if textured > MAX_TEXTURES:
         raise InputError(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from andon.quantities import Geometry, merged
 from andon.surface.occluder import Occluder
 
-__all__ = ["EMPTY_GEOMETRY", "ShadowBias", "SurfaceModel"]
+__all__ = ["EMPTY_GEOMETRY", "ObjectInfo", "ShadowBias", "SurfaceModel"]
 
 EMPTY_GEOMETRY = Geometry(np.zeros((0, 3)), np.zeros((0, 3), np.int32))
 
@@ -33,6 +33,28 @@ class ShadowBias:
 
 
 @dataclass(frozen=True)
+class ObjectInfo:
+    """A virtual object, as stages tell its pixels from others.
+
+    Attributes
+    ----------
+    name : for messages.
+    first_slot, slots : its materials, which no other object shares, are numbers `first_slot` to
+        `first_slot` + `slots` − 1 of the G-buffer's `material_id` on virtual objects.
+    triangles : how many it has.
+    lit_by_probes : takes indirect light from probes, instead of E0.
+    lit_by_lamps : takes direct light from lamps.
+    """
+
+    name: str
+    first_slot: int
+    slots: int
+    triangles: int
+    lit_by_probes: bool = True
+    lit_by_lamps: bool = True
+
+
+@dataclass(frozen=True)
 class SurfaceModel:
     """What there is to be seen.
 
@@ -42,12 +64,12 @@ class SurfaceModel:
     depth : view name → (H, W) depth in metres of that view's own picture, NaN in holes.
     normals : view name → (H, W, 3) world normals; with `depth`, those fitted to it; alone, a
         normals-only surface, which has no positions and so takes distant lamps only.
-    objects : virtual objects in the world.
+    objects : virtual objects in the world that stand still, each with materials of its own.
     occluder : what the real geometry's shadows are cast by (decimated).
     casters : what the virtual objects' shadows are cast by.
     bias : see `ShadowBias`.
-    object_triangles : name of each virtual object and how many of `objects.triangles` are its own,
-        in their order.
+    objects_table : the virtual objects in the order of their slots, which count up from 0: first
+        those of `objects`, in the order of its triangles and materials.
     notes : what a reader of files wants said to whoever looks at the picture.
     """
 
@@ -60,7 +82,7 @@ class SurfaceModel:
     occluder: Occluder = field(default_factory=lambda: Occluder(EMPTY_GEOMETRY, 0, 0.0))
     casters: Geometry = EMPTY_GEOMETRY
     bias: ShadowBias = field(default_factory=ShadowBias)
-    object_triangles: tuple[tuple[str, int], ...] = ()
+    objects_table: tuple[ObjectInfo, ...] = ()
     notes: tuple[str, ...] = ()
 
     @cached_property
@@ -68,7 +90,27 @@ class SurfaceModel:
         """All that casts shadows, real and virtual."""
         return merged(self.occluder.geometry, self.casters)
 
+    @cached_property
+    def object_of_slot(self) -> NDArray[np.int32]:
+        """(slots,) which row of `objects_table` a material of a virtual object belongs to."""
+        counts = [info.slots for info in self.objects_table]
+        return np.repeat(np.arange(len(counts), dtype=np.int32), counts)
+
+    @cached_property
+    def object_middles(self) -> NDArray[np.float64]:
+        """(n, 3) metres: the middles of the bounding boxes of the objects in `objects`."""
+        corners = self.objects.positions[self.objects.triangles]
+        ends = np.cumsum([info.triangles for info in self.objects_table])
+        parts = np.split(corners, ends[:-1]) if len(ends) else []
+        return np.array([middle_of(part) for part in parts], float).reshape(-1, 3)
+
     @property
     def is_distant_only(self) -> bool:
         """No positions are known: only directional, sky and hemisphere lamps can light it."""
         return bool(self.normals) and not self.depth and len(self.real.triangles) == 0
+
+
+def middle_of(points: NDArray[np.float64], /) -> NDArray[np.float64]:
+    """(3,) the middle of the bounding box of points (…, 3)."""
+    flat = points.reshape(-1, 3)
+    return 0.5 * (flat.min(axis=0) + flat.max(axis=0))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
 from andon.display.model import Exposure
 from andon.engines.checks import check_lamps
 from andon.engines.moment import Moment
+from andon.engines.probes import SceneProbes, ambient_of_probes, probes_of
 from andon.engines.reading import (
     ambient_of,
     exposure_of,
@@ -32,7 +33,7 @@ from andon.transport.direct.casters import OBJECTS, REAL, Casters
 __all__ = ["Prepared", "prepare"]
 
 # Tables and keys that the schema has and this version does not draw; a frame says so.
-LATER_TABLES = ("baked", "probes", "glass", "gaze")
+LATER_TABLES = ("baked", "glass", "gaze")
 
 LATER_KEYS = {
     "surface": ("response", "reflectance_map"),
@@ -66,6 +67,7 @@ class Prepared:
     photometry : the word that every number carries.
     ignored : tables of the scene that this version does not draw.
     sources : names of the known lamps of E0, which `lamps` has with positive and negative light.
+    probes : light that virtual objects stand in instead of E0, or None.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -78,6 +80,7 @@ class Prepared:
     photometry: Photometry = "absolute"
     ignored: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
+    probes: SceneProbes | None = None
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
@@ -99,8 +102,14 @@ def prepare(scene: Scene, /) -> Prepared:
     """Reads all that `scene` names. Raises `InputError` for whatever does not fit."""
     pictures = read_pictures(scene)
     views = {name: view_of(scene, name, picture) for name, picture in pictures.items()}
-    ambient = ambient_of(scene, views)
     surface = load_surface(scene, views)
+    probes, notes = probes_of(scene)
+    if scene.ambient is not None and scene.ambient.probes:
+        ambient, more = ambient_of_probes(scene, probes, surface, views)
+        notes += more
+    else:
+        ambient = ambient_of(scene, views)
+    surface = replace(surface, notes=(*surface.notes, *notes))
     per_unit = luminance_per_unit_of(scene, ambient)
     frames = {
         name: frame_from_picture(
@@ -130,6 +139,7 @@ def prepare(scene: Scene, /) -> Prepared:
         photometry=scene.photometry,
         ignored=_ignored(scene),
         sources=tuple(table.name for table in scene.ambient.source) if scene.ambient else (),
+        probes=probes,
     )
 
 

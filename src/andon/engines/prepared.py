@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
 from andon.display.model import Exposure
@@ -23,11 +25,11 @@ from andon.engines.reading import (
 from andon.glow.model import Glow
 from andon.lamps import Body, Lamp, resolve_bodies, resolve_lamps
 from andon.lamps.sources import resolve_sources
-from andon.quantities import CameraFrame, Photometry
+from andon.quantities import CameraFrame, Photometry, merged
 from andon.scene import Scene
 from andon.surface.load import load_surface
-from andon.surface.model import SurfaceModel
-from andon.transport.direct.casters import OBJECTS, REAL, Casters
+from andon.surface.model import SurfaceModel, middle_of
+from andon.transport.direct.casters import MOVERS, OBJECTS, REAL, Casters
 
 __all__ = ["Prepared", "prepare"]
 
@@ -81,16 +83,26 @@ class Prepared:
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
+        movers = tuple(mover.at(time_seconds) for mover in self.surface.movers)
+        moving = np.array([middle_of(part.positions[part.triangles]) for part in movers])
         return Moment(
             time_seconds,
             self.lamps(time_seconds),
             self.bodies(time_seconds),
-            self.surface.object_middles,
+            movers,
+            np.concatenate([self.surface.still_middles, moving.reshape(-1, 3)]),
         )
 
     def casters(self, moment: Moment) -> Casters:
         """What casts shadows at a moment."""
-        groups = [(REAL, self.surface.occluder.geometry), (OBJECTS, self.surface.casters)]
+        surface = self.surface
+        moving = [
+            part
+            for part, mover in zip(moment.movers, surface.movers, strict=True)
+            if mover.casts_shadow
+        ]
+        groups = [(REAL, surface.occluder.geometry), (OBJECTS, surface.casters)]
+        groups += [(MOVERS, merged(*moving))] if moving else []
         groups += [(body.name, body.geometry) for body in moment.bodies]
         return Casters(tuple(groups))
 
@@ -113,7 +125,7 @@ def prepare(scene: Scene, /) -> Prepared:
         for name, picture in pictures.items()
     }
     eye = next(iter(frames.values())).view.position
-    virtual = _virtual_groups(scene)
+    virtual = _virtual_groups(scene, surface)
     lamps = (*resolve_lamps(scene, 0.0), *resolve_sources(scene, 0.0, virtual))
     check_lamps(scene, lamps, surface, eye)
     return Prepared(
@@ -133,11 +145,12 @@ def prepare(scene: Scene, /) -> Prepared:
     )
 
 
-def _virtual_groups(scene: Scene) -> frozenset[str]:
+def _virtual_groups(scene: Scene, surface: SurfaceModel) -> frozenset[str]:
     """Caster groups that the photograph did not have: virtual objects, and bodies of lamps."""
     bodies = [body.name for body in resolve_bodies(scene, 0.0)]
-    casting = any(table.casts_shadow for table in scene.object)
-    return frozenset([*bodies, *([OBJECTS] if casting else [])])
+    still = [OBJECTS] if len(surface.casters.triangles) else []
+    moving = [MOVERS] if any(mover.casts_shadow for mover in surface.movers) else []
+    return frozenset([*bodies, *still, *moving])
 
 
 def _ignored(scene: Scene) -> tuple[str, ...]:

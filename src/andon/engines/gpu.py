@@ -38,7 +38,8 @@ class _View:
         self.frame, self.model = frame, prepared.surface
         self.has_lamps = False
         view = frame.view
-        self.surface = SurfaceStage(gpu, prepared.surface, view, engine.start.bodies)
+        start = engine.start
+        self.surface = SurfaceStage(gpu, prepared.surface, view, start.bodies, start.movers)
         seen = self.surface.surface
         self.composite = composite.CompositeStage(
             gpu,
@@ -95,7 +96,7 @@ class _View:
     def _entry_point(self, prepared: Prepared) -> str:
         if self.composite.has_maps:
             return "relit_with_maps"
-        has_objects = len(prepared.surface.objects.triangles) > 0 or self.surface.has_bodies
+        has_objects = prepared.surface.has_objects or self.surface.has_bodies
         return "relit_with_objects" if has_objects else "relit"
 
 
@@ -149,7 +150,8 @@ class GpuEngine:
 
     def see(self, view_name: str, moment: Moment) -> GpuSurface:
         """Records the drawing of the G-buffer."""
-        return self._views[view_name].surface.encode(self.encoder, moment.bodies)
+        stage = self._views[view_name].surface
+        return stage.encode(self.encoder, moment.bodies, moment.movers)
 
     def illuminate(self, seen: GpuSurface, moment: Moment) -> _View:
         """Brings shadow maps and lamps up to date; shared by both eyes."""

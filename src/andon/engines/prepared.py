@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
 from andon.display.model import Exposure
@@ -29,12 +31,12 @@ from andon.engines.reading import (
 from andon.glow.model import Glow
 from andon.lamps import Body, Lamp, resolve_bodies, resolve_lamps
 from andon.lamps.sources import resolve_sources
-from andon.quantities import CameraFrame, Photometry
+from andon.quantities import CameraFrame, Photometry, merged
 from andon.scene import Scene
 from andon.surface.load import load_surface
-from andon.surface.model import SurfaceModel
+from andon.surface.model import SurfaceModel, middle_of
 from andon.surface.virtual import virtual_surface
-from andon.transport.direct.casters import OBJECTS, REAL, Casters
+from andon.transport.direct.casters import MOVERS, OBJECTS, REAL, Casters
 
 __all__ = ["Prepared", "prepare"]
 
@@ -90,16 +92,26 @@ class Prepared:
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
+        movers = tuple(mover.at(time_seconds) for mover in self.surface.movers)
+        moving = np.array([middle_of(part.positions[part.triangles]) for part in movers])
         return Moment(
             time_seconds,
             self.lamps(time_seconds),
             self.bodies(time_seconds),
-            self.surface.object_middles,
+            movers,
+            np.concatenate([self.surface.still_middles, moving.reshape(-1, 3)]),
         )
 
     def casters(self, moment: Moment) -> Casters:
         """What casts shadows at a moment."""
-        groups = [(REAL, self.surface.occluder.geometry), (OBJECTS, self.surface.casters)]
+        surface = self.surface
+        moving = [
+            part
+            for part, mover in zip(moment.movers, surface.movers, strict=True)
+            if mover.casts_shadow
+        ]
+        groups = [(REAL, surface.occluder.geometry), (OBJECTS, surface.casters)]
+        groups += [(MOVERS, merged(*moving))] if moving else []
         groups += [(body.name, body.geometry) for body in moment.bodies]
         return Casters(tuple(groups))
 
@@ -110,11 +122,11 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
     With `drawn` False there are no frames where there is no photograph, and neither rig, white nor
     a volume of probes are needed: for whoever makes light, as bakes do.
     """
-    virtual = _virtual_groups(scene)
-    lamps = (*resolve_lamps(scene, 0.0), *resolve_sources(scene, 0.0, virtual))
     probes, notes = probes_of(scene) if drawn else (None, ())
     seen = _photographed if scene.has_photograph else _all_virtual
-    frames, ambient, surface = seen(scene, lamps, probes, drawn)
+    frames, ambient, surface = seen(scene, probes, drawn)
+    virtual = _virtual_groups(scene, surface)
+    lamps = (*resolve_lamps(scene, 0.0), *resolve_sources(scene, 0.0, virtual))
     if frames:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
@@ -139,18 +151,15 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
 _Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel]
 
 
-def _all_virtual(
-    scene: Scene, lamps: tuple[Lamp, ...], probes: SceneProbes | None, drawn: bool
-) -> _Seen:
+def _all_virtual(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen:
     """Frames, light and surface of a scene without a photograph."""
     ambient = ambient_without_photograph(scene)
+    lamps = resolve_lamps(scene, 0.0)
     frames = black_frames(scene, white_cd_m2(scene, ambient, lamps)) if drawn else {}
     return frames, ambient, virtual_surface(scene)
 
 
-def _photographed(
-    scene: Scene, lamps: tuple[Lamp, ...], probes: SceneProbes | None, drawn: bool
-) -> _Seen:
+def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen:
     """Frames, light and surface of a photograph."""
     pictures = read_pictures(scene)
     views = {name: view_of(scene, name, picture.shape) for name, picture in pictures.items()}
@@ -174,11 +183,12 @@ def _photographed(
     return frames, ambient, replace(surface, notes=(*surface.notes, *notes))
 
 
-def _virtual_groups(scene: Scene) -> frozenset[str]:
+def _virtual_groups(scene: Scene, surface: SurfaceModel) -> frozenset[str]:
     """Caster groups that the photograph did not have: virtual objects, and bodies of lamps."""
     bodies = [body.name for body in resolve_bodies(scene, 0.0)]
-    casting = any(table.casts_shadow for table in scene.object)
-    return frozenset([*bodies, *([OBJECTS] if casting else [])])
+    still = [OBJECTS] if len(surface.casters.triangles) else []
+    moving = [MOVERS] if any(mover.casts_shadow for mover in surface.movers) else []
+    return frozenset([*bodies, *still, *moving])
 
 
 def _ignored(scene: Scene) -> tuple[str, ...]:

@@ -30,15 +30,17 @@ class ReferenceEngine:
     def __init__(self, prepared: Prepared) -> None:
         self.prepared = prepared
         self._surfaces: dict[str, Surface] = {}
-        self._rays = ShadowRays(prepared.casters(Moment()))
+        self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
         self.maps_redrawn = 0
 
     def see(self, view_name: str, moment: Moment) -> Surface:
-        """The surface of a view; made once, but for bodies, since all else stands still."""
+        """The surface of a view; made once, but for what moves."""
         if view_name not in self._surfaces:
             view = self.prepared.frames[view_name].view
             self._surfaces[view_name] = surface.see(self.prepared.surface, view)
-        return surface.with_bodies(self._surfaces[view_name], moment.bodies)
+        still = self._surfaces[view_name]
+        seen = surface.with_movers(still, self.prepared.surface, moment.movers)
+        return surface.with_bodies(seen, moment.bodies)
 
     def illuminate(self, seen: Surface, moment: Moment) -> Illuminance:
         """Direct light of all lamps on the surface."""

@@ -17,8 +17,9 @@ from andon.harmonics import deringed, irradiance
 from andon.pipeline import EngineName, Renderer
 from andon.quantities import CameraFrame, Geometry, Material
 from andon.spaces import View, look_at
-from andon.surface.load import joined, surface_of_mesh
+from andon.surface.load import surface_of_mesh
 from andon.surface.model import ObjectInfo
+from andon.surface.objects import joined
 from andon.transport.probes.cells import build_cells
 from andon.transport.probes.hidden import Walls, hidden_mix, walls_of
 from andon.transport.probes.light import ProbeLight

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from andon.quaternions import rotation_matrices
 from andon.scene.base import (
     Fraction,
     Name,
@@ -58,15 +59,8 @@ class Placed(Table):
         """(4, 4) affine placement in metres."""
         if self.transform is not None:
             return np.array(self.transform, dtype=np.float64)
-        x, y, z, w = np.array(self.rotation_xyzw) / np.linalg.norm(self.rotation_xyzw)
         matrix = np.eye(4)
-        matrix[:3, :3] = self.scale * np.array(
-            [
-                [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-            ]
-        )
+        matrix[:3, :3] = self.scale * rotation_matrices(np.array(self.rotation_xyzw))
         matrix[:3, 3] = self.position
         return matrix
 

@@ -29,8 +29,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.harmonics import cube_directions, cube_solid_angles
 from andon.files.volumes.model import Distances
+from andon.harmonics import cube_directions, cube_solid_angles
 from andon.transport.probes.octahedra import bilinear_taps, square_of
 
 __all__ = ["CUT", "LIFT", "SHARPNESS", "distance_map", "visible"]
@@ -137,12 +137,14 @@ def visible(
     texels, weights = bilinear_taps(reach, distances.mean_m.shape[-1])
     tap = (probes[..., None], texels)
     count = len(distances.mean_m)
-    mean = (weights * distances.mean_m.reshape(count, -1)[tap]).sum(axis=-1)
-    square = (weights * distances.mean_square_m2.reshape(count, -1)[tap]).sum(axis=-1)
+    means = distances.mean_m.reshape(count, -1)[tap].astype(np.float64)
+    squares = distances.mean_square_m2.reshape(count, -1)[tap].astype(np.float64)
+    mean = (weights * means).sum(axis=-1)
+    # The spread within texels and that between them; float32 would lose both in squares of means.
+    within = np.maximum(squares - means**2, 0)
+    spread = (weights * (within + (means - mean[..., None]) ** 2)).sum(axis=-1)
     behind = np.maximum(np.minimum(distance, distances.far_m) - mean, 0)
-    # float32 pictures: the spread of a sphere's inside would be rounding alone.
-    variance = np.maximum(square - mean**2, LEAST_SPREAD**2 * mean**2)
-    variance = np.maximum(variance, _TINY)
+    variance = np.maximum(np.maximum(spread, LEAST_SPREAD**2 * mean**2), _TINY)
     share = variance / (variance + behind**2)
     return np.maximum((share - cut) / (1 - cut), 0) ** sharpness
 

@@ -50,9 +50,11 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        harmonics,
         lampshade,
         penumbra,
         photometry,
+        probe_light,
         relight,
         synthetic,
     )
@@ -65,4 +67,6 @@ def rows() -> tuple[Row, ...]:
         *synthetic.ROWS,
         *lampshade.ROWS,
         *photometry.ROWS,
+        *harmonics.ROWS,
+        *probe_light.ROWS,
     )

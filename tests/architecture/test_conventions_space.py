@@ -10,7 +10,7 @@ from andon.gbuffer import VIEW_RECORD, pack_view
 from andon.gpu.layout import HostStruct
 from andon.spaces import View, invert_rigid, rotate, transform_points
 from andon.surface.depth import DepthEncoding, depth_from_raw
-from andon.surface.load import object_geometry
+from andon.surface.objects import object_geometry
 from andon.surface.triangulate import triangulate_depth
 
 from .settings import ORIGIN, VIEW, X, Y, Z, close, grey, lamps_of, relit

@@ -24,7 +24,7 @@ from andon.files.volumes import Cells, Distances, ProbeVolume, Zone
 from andon.harmonics import deringed
 from andon.scene import Scene
 from andon.scene.probes import Probes
-from andon.surface.load import joined
+from andon.surface.objects import joined
 from andon.transport.probes.placement import Placed, Walls
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from andon.cli.console import check_writable, note
+from andon.cli.console import check_writable, note, printable
 from andon.errors import InputError
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def place(
     placed = place_probes(loaded, scene_geometry(loaded))
     _print(placed)
     for warning in placed.warnings:
-        note(warning)
+        note(printable(warning))
     if out is not None:
         _write(placed, out, scene)
         print(out)
@@ -102,7 +102,7 @@ def _facts(placed: Placed) -> list[tuple[str, str]]:
     if panoramas:
         facts.append(("panoramas", f"{panoramas} of them are pictures"))
     more = ", …" if len(tally.in_walls) > SHOWN_NAMES else ""
-    names = ", ".join(tally.in_walls[:SHOWN_NAMES]) + more
+    names = printable(", ".join(tally.in_walls[:SHOWN_NAMES]) + more)
     facts += [
         ("in walls", f"{len(tally.in_walls)}: {names}" if names else "none"),
         (

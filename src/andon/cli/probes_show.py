@@ -1,22 +1,28 @@
-"""``andon probes show``: a probe volume in figures and as a picture."""
+"""``andon probes show``: a picture of a probe volume."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from andon.cli.console import check_writable, note
+from andon.cli.console import check_writable, note, printable
 from andon.errors import InputError, nearest_name
 
 if TYPE_CHECKING:
-    from andon.display.probe_pictures import Part
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from andon.display.probe_pictures import Look, Part
     from andon.files.volumes import ProbeVolume
     from andon.quantities import Geometry
     from andon.scene import Scene
+    from andon.spaces import View
+
+    Float = NDArray[np.float64]
 
 __all__ = ["show"]
 
@@ -35,7 +41,7 @@ class _Subject:
 
 def show(
     file: Annotated[Path, typer.Argument(help="Probe volume (.glb), or a scene (.toml).")],
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="Picture, PNG.")] = None,
+    out: Annotated[Path, typer.Option("-o", "--out", help="Picture, PNG.")] = Path("probes.png"),
     size: Annotated[str, typer.Option(help="Of the picture, pixels.")] = "1280x720",
     eye: Annotated[
         str | None, typer.Option("--from", metavar="X,Y,Z", help="Where from, metres.")
@@ -54,21 +60,20 @@ def show(
         float | None, typer.Option(help="Screen value per cd/m²; default: chosen and printed.")
     ] = None,
 ) -> None:
-    """Say what a probe volume holds, and draw its probes and cells.
+    """Draw a probe volume: balls with the probes' light, cells, hull, zones.
 
     Of a scene, the volume that it names is drawn amid its surfaces; while there is none, the
     places where its probes will go.
 
     Examples:
 
-        andon probes show room.probes.glb
+        andon probes show room.probes.glb --what balls,cells
 
-        andon probes show scene.toml -o probes.png --what balls,hull
+        andon probes show scene.toml -o probes.png
 
         andon probes show scene.toml -o near.png --from 0,2,4 --at 0,1,0 --irradiance
     """
-    if out is not None:
-        check_writable(out, (".png",), "--out")
+    check_writable(out, (".png",), "--out")
     shape = _size(size)
     parts = _parts(what)
     ends = _point(eye, "--from"), _point(target, "--at")
@@ -76,12 +81,13 @@ def show(
         raise InputError(f"must be > 0, got {exposure:g}", field="--exposure")
     subject = _subject(file)
     _check_state(subject.volume, state, file)
-    _print(subject.volume)
-    if out is not None:
-        white = _draw(subject, out, shape, ends, parts, irradiance, state, exposure, file.name)
-        if white == white:
-            note(f"white is {white:.4g} cd/m², that is --exposure {1 / white:.3g}")
-        print(out)
+    view = _view(subject, shape, *ends)
+    from andon.display.probe_pictures import Look
+
+    white = _draw(subject, view, out, Look(parts, irradiance, None, exposure), state, file.name)
+    if white == white:
+        note(f"white is {white:.4g} cd/m², that is --exposure {1 / white:.3g}")
+    print(out)
 
 
 def _size(text: str) -> tuple[int, int]:
@@ -110,7 +116,7 @@ def _parts(text: str) -> tuple[Part, ...]:
     return tuple(part for part in PARTS if part in words)
 
 
-def _point(text: str | None, field: str) -> Any:
+def _point(text: str | None, field: str) -> Float | None:
     """(3,) of three numbers with commas, or None."""
     import numpy as np
 
@@ -153,11 +159,12 @@ def _subject(file: Path) -> _Subject:
 def _unlit(scene: Scene, geometry: Geometry) -> ProbeVolume:
     """The volume that a bake of the scene would fill."""
     from andon.files.volumes import ProbeVolume
+    from andon.transport.probes.cells import build_cells
     from andon.transport.probes.placement import place_probes, zones_of
 
     placed = place_probes(scene, geometry)
     for warning in placed.warnings:
-        note(warning)
+        note(printable(warning))
     zones = zones_of(scene, placed.positions)
     return ProbeVolume(
         placed.positions,
@@ -167,6 +174,7 @@ def _unlit(scene: Scene, geometry: Geometry) -> ProbeVolume:
         placed.ranges_m,
         {},
         zones,
+        build_cells(placed.positions, zones),
         photometry=scene.photometry,
     )
 
@@ -182,66 +190,40 @@ def _check_state(volume: ProbeVolume, state: str | None, file: Path) -> None:
         )
 
 
-def _print(volume: ProbeVolume) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(box=None, show_header=False, pad_edge=False)
-    for name, value in _facts(volume):
-        table.add_row(name, value)
-    Console(highlight=False, markup=False).print(table)
-
-
-def _facts(volume: ProbeVolume) -> list[tuple[str, str]]:
-    roles = sorted(set(volume.roles), key=volume.roles.index)
-    low, high = volume.positions.min(axis=0), volume.positions.max(axis=0)
-    facts = [
-        ("probes", ", ".join(f"{volume.roles.count(role)} {role}" for role in roles)),
-        ("bounds", " × ".join(f"{a:.3g}…{b:.3g}" for a, b in zip(low, high, strict=True)) + " m"),
-        ("zones", ", ".join(f"{zone.name} ({len(zone.probes)})" for zone in volume.zones)),
-    ]
-    cells = volume.cells
-    if cells is None:
-        facts.append(("cells", "not joined"))
-    else:
-        facts.append(("cells", f"{len(cells.corners)} tetrahedra, hull of {len(cells.facets)}"))
-    if volume.states:
-        facts.append(
-            ("states", f"{', '.join(volume.states)}; bands 0…{volume.order}, {volume.photometry}")
-        )
-    facts.append(("visibility", "stored" if volume.distances is not None else "not stored"))
-    return facts
-
-
-def _draw(
-    subject: _Subject,
-    out: Path,
-    size: tuple[int, int],
-    ends: tuple[Any, Any],
-    parts: tuple[Part, ...],
-    irradiance: bool,
-    state: str | None,
-    exposure: float | None,
-    caption: str,
-) -> float:
-    """Writes the picture; the luminance of its white, NaN without light."""
+def _view(
+    subject: _Subject, size: tuple[int, int], eye: Float | None, target: Float | None
+) -> View:
     import numpy as np
 
-    from andon.display.probe_pictures import Look, around_view, probe_picture
-    from andon.files.pictures import write_png
+    from andon.display.probe_pictures import around_view
 
     points = subject.volume.positions
     if subject.geometry is not None and len(subject.geometry.triangles):
         points = np.concatenate([points, subject.geometry.positions])
-    view = around_view(points, size, eye=ends[0], target=ends[1])
-    look = Look(parts, irradiance, units_per_cd_m2=exposure)
+    try:
+        return around_view(points, size, eye=eye, target=target)
+    except InputError as error:
+        if error.field != "look_at":
+            raise
+        raise InputError(
+            "must lie apart, and not above each other", field="--from and --at"
+        ) from error
+
+
+def _draw(
+    subject: _Subject, view: View, out: Path, look: Look, state: str | None, caption: str
+) -> float:
+    """Writes the picture; the luminance of its white, NaN without light."""
+    from andon.display.probe_pictures import probe_picture
+    from andon.files.pictures import write_png
+
     picture = probe_picture(
         subject.volume,
         view,
         look,
         geometry=subject.geometry,
         state=state or subject.state,
-        caption=caption,
+        caption=printable(caption),
     )
     write_png(out, picture.rgb)
     return picture.white_cd_m2

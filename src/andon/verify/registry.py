@@ -50,10 +50,12 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        harmonics,
         lampshade,
         penumbra,
         photometry,
         probe_capture,
+        probe_light,
         relight,
         synthetic,
     )
@@ -67,4 +69,6 @@ def rows() -> tuple[Row, ...]:
         *lampshade.ROWS,
         *photometry.ROWS,
         *probe_capture.ROWS,
+        *harmonics.ROWS,
+        *probe_light.ROWS,
     )

@@ -19,13 +19,22 @@ from pathlib import Path
 
 from andon.errors import InputError
 from andon.files.limits import DEFAULT_LIMITS, Limits
-from andon.files.meshes.gltf import read_gltf, read_gltf_lights
+from andon.files.meshes.gltf import read_gltf, read_gltf_animated, read_gltf_lights
+from andon.files.meshes.gltf.animated import AnimatedMesh
 from andon.files.meshes.model import MeshFile, MeshLight
 from andon.files.meshes.obj import read_obj
 from andon.files.meshes.ply import read_ply
 from andon.files.reader import Reader, choose_reader
 
-__all__ = ["MESH_READERS", "MeshFile", "MeshLight", "read_lights", "read_mesh"]
+__all__ = [
+    "MESH_READERS",
+    "AnimatedMesh",
+    "MeshFile",
+    "MeshLight",
+    "read_animated",
+    "read_lights",
+    "read_mesh",
+]
 
 MESH_READERS = (
     Reader("mesh.obj", (".obj",), read_obj),
@@ -37,11 +46,25 @@ MESH_READERS = (
 
 def read_lights(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> tuple[MeshLight, ...]:
     """The lights of a glTF file, in metres with +Y up; other formats have none and are refused."""
+    _check_gltf(path, "lights")
+    return read_gltf_lights(path, limits=limits)
+
+
+def read_animated(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> AnimatedMesh:
+    """The mesh of a glTF file with its animations, in metres with +Y up.
+
+    Raises `InputError` for other formats, and for what `read_mesh` refuses; for times of keys that
+    do not rise, samplers that are missing, unknown paths and values that do not fit.
+    """
+    _check_gltf(path, "animations")
+    return read_gltf_animated(path, limits=limits)
+
+
+def _check_gltf(path: str | Path, what: str) -> None:
     if Path(path).suffix.lower() not in (".gltf", ".glb"):
         raise InputError(
-            "only glTF files have lights", file=path, remedy="use a .gltf or .glb file"
+            f"only glTF files have {what}", file=path, remedy="use a .gltf or .glb file"
         )
-    return read_gltf_lights(path, limits=limits)
 
 
 def read_mesh(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> MeshFile:

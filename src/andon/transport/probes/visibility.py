@@ -5,18 +5,17 @@ and the mean square of the distances in each texel; if the point is farther than
 of what is at least as far is at most σ²/(σ² + (d − mean)²) (Chebyshev's inequality, one-sided:
 Majercik et al. 2019, after the variance shadow maps of Donnelly & Lauritzen 2006).
 
-============================ ==================== ==================================================
-what                         here                 why
-============================ ==================== ==================================================
-share below which nothing    ½ (`CUT`)            the bound is loose: behind a wall that is seen at a
-is left                                           slant some σ²/d² is always left, and lit probes that
-                                                  keep 1 % outweigh the one on the dark side
-                                                  (Lauritzen & Salvi's light-bleeding reduction)
-power                        3                    Majercik et al.'s sharpening
-least share                  0                    their implementation keeps 5 %: a leak of 0.5 %
-lift along the normal        5 % of the distance  a texel of 16² is 0.2 rad wide; walls seen at a slant
-                                                  would hide their own points
-============================ ==================== ==================================================
+=========================== ==================== ==================================================
+what                        here                 why
+=========================== ==================== ==================================================
+share that counts for none  ½ (`CUT`)            the bound is loose: lit probes behind a wall that
+                                                 is seen at a slant keep 1 %, and outweigh the one
+                                                 on the dark side (Lauritzen 2007 cuts so, too)
+power                       3                    Majercik et al.'s sharpening
+least share                 0                    their implementation keeps 5 %: it leaks
+lift along the normal       5 % of the distance  a texel of 16² is 0.2 rad wide; walls seen at a
+                                                 slant would hide their own points
+=========================== ==================== ==================================================
 
 `andon verify probes.leaks` has the figures.
 """
@@ -29,8 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.harmonics import cube_directions, cube_solid_angles
 from andon.files.volumes.model import Distances
+from andon.harmonics import cube_directions, cube_solid_angles
 from andon.transport.probes.octahedra import bilinear_taps, square_of
 
 __all__ = ["CUT", "LIFT", "SHARPNESS", "distance_map", "visible"]
@@ -137,12 +136,14 @@ def visible(
     texels, weights = bilinear_taps(reach, distances.mean_m.shape[-1])
     tap = (probes[..., None], texels)
     count = len(distances.mean_m)
-    mean = (weights * distances.mean_m.reshape(count, -1)[tap]).sum(axis=-1)
-    square = (weights * distances.mean_square_m2.reshape(count, -1)[tap]).sum(axis=-1)
+    means = distances.mean_m.reshape(count, -1)[tap].astype(np.float64)
+    squares = distances.mean_square_m2.reshape(count, -1)[tap].astype(np.float64)
+    mean = (weights * means).sum(axis=-1)
+    # The spread within texels and that between them; float32 would lose both in squares of means.
+    within = np.maximum(squares - means**2, 0)
+    spread = (weights * (within + (means - mean[..., None]) ** 2)).sum(axis=-1)
     behind = np.maximum(np.minimum(distance, distances.far_m) - mean, 0)
-    # float32 pictures: the spread of a sphere's inside would be rounding alone.
-    variance = np.maximum(square - mean**2, LEAST_SPREAD**2 * mean**2)
-    variance = np.maximum(variance, _TINY)
+    variance = np.maximum(np.maximum(spread, LEAST_SPREAD**2 * mean**2), _TINY)
     share = variance / (variance + behind**2)
     return np.maximum((share - cut) / (1 - cut), 0) ** sharpness
 

@@ -63,6 +63,21 @@ class BufferStore:
             return _normalised(stored)
         return to_float64(stored) if stored.dtype.kind == "f" else stored
 
+    def attribute(
+        self, attributes: Tree, name: str, kinds: tuple[str, ...], count: int
+    ) -> NDArray[np.float64] | None:
+        """(count, n) finite float64 of one attribute of `count` vertices; None without it."""
+        stored = attributes.get(name)
+        if stored is None:
+            return None
+        values = self.accessor(stored, kinds)
+        if len(values) != count:
+            raise stored.error(f"must have {count} elements like POSITION, has {len(values)}")
+        values = values.astype(np.float64)
+        if not np.isfinite(values).all():
+            raise stored.error("must be finite")
+        return values
+
     def _stored(self, accessor: Tree, count: int, width: int) -> NDArray[Any]:
         kind = _component(accessor)
         view_index = accessor.get("bufferView")

@@ -13,8 +13,9 @@ from andon.files.limits import check_at_most
 from andon.files.meshes.gltf.container import Document
 from andon.files.meshes.model import MeshLight
 from andon.files.tree import Tree
+from andon.quaternions import rotation_matrices
 
-__all__ = ["PlacedNode", "place_nodes", "read_light"]
+__all__ = ["PlacedNode", "local_transform", "place_nodes", "read_light"]
 
 Float = NDArray[np.float64]
 LIGHTS = "KHR_lights_punctual"
@@ -24,12 +25,16 @@ KINDS: tuple[LightKind, ...] = ("point", "spot", "directional")
 
 @dataclass(frozen=True)
 class PlacedNode:
-    """A node of the scene: its entry, name, number in the file and world transform (4, 4)."""
+    """A node of the scene: its entry, name, number in the file and world transform (4, 4).
+
+    `parent` is the place of its parent among the placed nodes, −1 for none.
+    """
 
     entry: Tree
     name: str
     number: int
     world_from_node: Float
+    parent: int = -1
 
 
 def place_nodes(document: Document) -> list[PlacedNode]:
@@ -42,19 +47,20 @@ def place_nodes(document: Document) -> list[PlacedNode]:
     check_at_most(len(nodes), document.limits.max_nodes, "nodes", document.path)
     placed: list[PlacedNode] = []
     seen: set[int] = set()
-    stack = [(number, np.eye(4), 1) for number in reversed(_roots(document, nodes))]
+    stack = [(number, np.eye(4), 1, -1) for number in reversed(_roots(document, nodes))]
     while stack:
-        number, world_from_parent, depth = stack.pop()
+        number, world_from_parent, depth, parent = stack.pop()
         entry = nodes[number]
         if number in seen:
             raise entry.error("must have one parent, is reached twice")
         check_at_most(depth, document.limits.max_nodes, "levels of nodes", document.path)
         seen.add(number)
-        world = world_from_parent @ _local(entry)
-        name = entry.get("name")
-        placed.append(PlacedNode(entry, name.text() if name else entry.place, number, world))
+        world = world_from_parent @ local_transform(entry)
+        name, own = entry.get("name"), len(placed)
+        title = name.text() if name else entry.place
+        placed.append(PlacedNode(entry, title, number, world, parent))
         children = [child.integer(0, len(nodes) - 1) for child in entry.list_of("children")]
-        stack.extend((child, world, depth + 1) for child in reversed(children))
+        stack.extend((child, world, depth + 1, own) for child in reversed(children))
     return placed
 
 
@@ -69,7 +75,7 @@ def _roots(document: Document, nodes: list[Tree]) -> list[int]:
     return [number for number in range(len(nodes)) if number not in children]
 
 
-def _local(entry: Tree) -> Float:
+def local_transform(entry: Tree) -> Float:
     """``parent_from_node`` of one node: its matrix (stored by columns), or T·R·S."""
     matrix = entry.get("matrix")
     if matrix is not None:
@@ -91,14 +97,7 @@ def _rotation(turn: Tree) -> Float:
     length = float(np.linalg.norm(quaternion))
     if not 1e-6 < length < 1e6:
         raise turn.error(f"must be a unit quaternion, has length {length:g}")
-    x, y, z, w = quaternion / length
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    return rotation_matrices(quaternion)
 
 
 def read_light(document: Document, node: PlacedNode) -> MeshLight | None:

@@ -1,22 +1,22 @@
-"""glTF's mesh primitives as triangles in the world (glTF 2.0, section 3.7)."""
+"""glTF's mesh primitives as they are stored: triangles in the space of their mesh (3.7)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.files.limits import check_at_most
-from andon.files.meshes.assemble import check_geometry, facet_normals
+from andon.files.meshes.assemble import check_geometry
 from andon.files.meshes.gltf.buffers import BufferStore
 from andon.files.meshes.gltf.container import Document
 from andon.files.meshes.gltf.materials import TextureUse
-from andon.files.meshes.gltf.nodes import PlacedNode
+from andon.files.meshes.gltf.skins import Binding, read_binding
 from andon.files.tree import Tree
 
-__all__ = ["Part", "read_part", "skin_matrices", "with_facet_normals"]
+__all__ = ["BoundPart", "Targets", "read_part", "read_targets", "with_own_corners"]
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int64]
@@ -24,43 +24,65 @@ TRIANGLES, STRIP, FAN = 4, 5, 6
 
 
 @dataclass(frozen=True)
-class Part:
-    """One primitive in the world: positions (n, 3), triangles (m, 3), normals, uvs, material."""
+class Targets:
+    """Morph targets: `positions` (k, n, 3) and `normals` (k, n, 3) or None, added by weight."""
+
+    positions: Float
+    normals: Float | None
+
+
+@dataclass(frozen=True)
+class BoundPart:
+    """One primitive before its node or skin places it.
+
+    Attributes
+    ----------
+    positions, normals, uvs : (n, 3), (n, 3) or None, (n, 2) or None.
+    triangles : (m, 3) vertex numbers.
+    material : number of its material.
+    node : place of its node among the placed nodes.
+    binding : joints of its vertices; None: its node moves it.
+    targets : or None.
+    has_facets : every triangle has corners of its own, whose normals are the triangle's.
+    """
 
     positions: Float
     triangles: Int
     normals: Float | None
     uvs: Float | None
     material: int
+    node: int
+    binding: Binding | None = None
+    targets: Targets | None = None
+    has_facets: bool = False
 
 
 def read_part(
     document: Document,
     buffers: BufferStore,
     primitive: Tree,
-    node: PlacedNode,
     use: TextureUse,
     material: int,
-    skin: Float | None,
-) -> Part | None:
-    """A primitive placed by its node (or its skin); None for points and lines."""
+    node: int,
+    joints: int | None,
+) -> BoundPart | None:
+    """A primitive; None for points and lines. `joints`: how many its node's skin has, or None."""
     mode = primitive.get("mode")
     shape = mode.integer(0, 6) if mode else TRIANGLES
     if shape < TRIANGLES:
         return None
     attributes = primitive.at("attributes")
     positions = buffers.accessor(attributes.at("POSITION"), ("VEC3",)).astype(np.float64)
-    triangles = _triangles(document, buffers, primitive, shape, len(positions))
+    count = len(positions)
+    triangles = _triangles(document, buffers, primitive, shape, count)
     check_geometry(positions, triangles, str(document.path))
-    normals = _attribute(buffers, attributes, "NORMAL", ("VEC3",), len(positions))
-    uvs = _attribute(buffers, attributes, f"TEXCOORD_{use.coordinates}", ("VEC2",), len(positions))
+    normals = buffers.attribute(attributes, "NORMAL", ("VEC3",), count)
+    uvs = buffers.attribute(attributes, f"TEXCOORD_{use.coordinates}", ("VEC2",), count)
     if uvs is not None and use.transform is not None:
         matrix = np.array(use.transform)
         uvs = uvs @ matrix[:, :2].T + matrix[:, 2]
-    placed = node.world_from_node
-    if skin is not None:
-        placed = _blended(buffers, attributes, skin, len(positions))
-    return _place(Part(positions, triangles, normals, uvs, material), placed)
+    binding = None if joints is None else read_binding(buffers, attributes, joints, count)
+    return BoundPart(positions, triangles, normals, uvs, material, node, binding)
 
 
 def _triangles(
@@ -90,89 +112,42 @@ def _triangles(
     return np.stack([order[i], order[i + 1 + odd], order[i + 2 - odd]], axis=-1)
 
 
-def _attribute(
-    buffers: BufferStore, attributes: Tree, name: str, kinds: tuple[str, ...], count: int
-) -> Float | None:
-    stored = attributes.get(name)
-    if stored is None:
+def read_targets(buffers: BufferStore, primitive: Tree, count: int) -> Targets | None:
+    """The morph targets of a primitive of `count` vertices (3.7.2.2); None without any."""
+    entries = primitive.list_of("targets")
+    if not entries:
         return None
-    values = buffers.accessor(stored, kinds)
-    if len(values) != count:
-        raise stored.error(f"must have {count} elements like POSITION, has {len(values)}")
-    values = values.astype(np.float64)
-    if not np.isfinite(values).all():
-        raise stored.error("must be finite")
-    return values
+    stored: dict[str, list[Any]] = {"POSITION": [], "NORMAL": []}
+    for entry in entries:
+        for name, found in stored.items():
+            found.append(buffers.attribute(entry, name, ("VEC3",), count))
+
+    def stacked(name: str) -> Float | None:
+        if all(values is None for values in stored[name]):
+            return None
+        none = np.zeros((count, 3))
+        return np.stack([none if values is None else values for values in stored[name]])
+
+    positions = stacked("POSITION")
+    if positions is None:
+        positions = np.zeros((len(entries), count, 3))
+    return Targets(positions, stacked("NORMAL"))
 
 
-def _place(part: Part, placed: Float) -> Part:
-    """The part under one (4, 4) or per-vertex (n, 4, 4) transforms.
-
-    Normals go by the cofactor matrix, which is the inverse transpose times the determinant and
-    exists for flattening transforms too. Mirroring turns triangles round (3.7.4).
-    """
-    linear, shift = placed[..., :3, :3], placed[..., :3, 3]
-    positions = np.einsum("...ij,...j->...i", linear, part.positions) + shift
-    mirrored = np.linalg.det(linear) < 0
-    sign = np.where(mirrored, -1.0, 1.0)[..., None]
-    normals = part.normals
-    if normals is not None:
-        cofactor = np.stack(
-            [np.cross(linear[..., (i + 1) % 3, :], linear[..., (i + 2) % 3, :]) for i in range(3)],
-            axis=-2,
-        )
-        normals = np.einsum("...ij,...j->...i", cofactor, normals) * sign
-    triangles = part.triangles
-    turned = mirrored if placed.ndim == 2 else mirrored[triangles[:, 0]]
-    triangles = np.where(np.reshape(turned, (-1, 1)), triangles[:, [0, 2, 1]], triangles)
-    return Part(positions, triangles, normals, part.uvs, part.material)
-
-
-def skin_matrices(
-    document: Document, buffers: BufferStore, node: PlacedNode, world: dict[int, Float]
-) -> Float | None:
-    """(j, 4, 4) world_from_mesh of each joint of the node's skin, in the pose of the file."""
-    reference = node.entry.get("skin")
-    if reference is None:
-        return None
-    skin = document.entry("skins", reference)
-    joints = [joint.integer(0, 2**31) for joint in skin.at("joints").elements()]
-    if not joints or any(joint not in world for joint in joints):
-        raise skin.error("must have joints that are nodes of the scene")
-    matrices = np.stack([world[joint] for joint in joints])
-    inverse = skin.get("inverseBindMatrices")
-    if inverse is not None:
-        bind = buffers.accessor(inverse, ("MAT4",)).astype(np.float64)
-        if len(bind) < len(joints) or not np.isfinite(bind).all():
-            raise inverse.error(f"must be {len(joints)} finite matrices, has {len(bind)}")
-        matrices = matrices @ bind[: len(joints)].reshape(-1, 4, 4).swapaxes(1, 2)
-    return matrices
-
-
-def _blended(buffers: BufferStore, attributes: Tree, skin: Float, count: int) -> Float:
-    """(n, 4, 4) transform of each vertex: joints by weights (3.7.3.3)."""
-    if "JOINTS_0" not in attributes or "WEIGHTS_0" not in attributes:
-        raise attributes.error("a skinned mesh must have JOINTS_0 and WEIGHTS_0")
-    joints: Any = _attribute(buffers, attributes, "JOINTS_0", ("VEC4",), count)
-    weights: Any = _attribute(buffers, attributes, "WEIGHTS_0", ("VEC4",), count)
-    joints = joints.astype(np.int64)
-    total = weights.sum(axis=1)
-    if joints.min() < 0 or joints.max() >= len(skin) or (total <= 0).any():
-        raise attributes.error(f"must have joints 0…{len(skin) - 1} and weights that add up to 1")
-    out = np.zeros((count, 4, 4))
-    for corner in range(4):
-        out += (weights[:, corner] / total)[:, None, None] * skin[joints[:, corner]]
-    return out
-
-
-def with_facet_normals(part: Part) -> Part:
-    """The part with a vertex per corner and flat normals (3.7.2.1: where none are given)."""
+def with_own_corners(part: BoundPart) -> BoundPart:
+    """The part with a vertex per corner, for flat normals (3.7.2.1: where none are given)."""
     chosen = part.triangles.ravel()
-    facets = facet_normals(part.positions, part.triangles)
-    return Part(
-        part.positions[chosen],
-        np.arange(len(chosen)).reshape(-1, 3),
-        np.repeat(facets, 3, axis=0),
-        None if part.uvs is None else part.uvs[chosen],
-        part.material,
+    binding, targets = part.binding, part.targets
+    if binding is not None:
+        binding = replace(binding, joints=binding.joints[chosen], weights=binding.weights[chosen])
+    if targets is not None:
+        targets = Targets(targets.positions[:, chosen], None)
+    return replace(
+        part,
+        positions=part.positions[chosen],
+        triangles=np.arange(len(chosen)).reshape(-1, 3),
+        uvs=None if part.uvs is None else part.uvs[chosen],
+        binding=binding,
+        targets=targets,
+        has_facets=True,
     )

@@ -66,10 +66,19 @@ def from_vertices(placement: Placement, walls: Walls, file: str) -> Generated:
     """Off the vertices of the surface, along their normals, no nearer than the least distance.
 
     A vertex's normal is the mean of its triangles' weighted by their areas, corners at one place
-    counting as one. Places in the file's order; those inside or behind another wall are dropped.
+    counting as one. Places in the file's order; those inside or behind another wall are dropped,
+    and those outside of the placement's box, if it states one, do not count at all.
     """
     geometry = walls.geometry
-    low, high = box_of(placement, geometry, file)
+    if len(geometry.triangles) == 0:
+        raise InputError(
+            "kind 'vertices' needs a surface",
+            file=file,
+            field="probes.placement.kind",
+            remedy="give a [surface], or another kind",
+        )
+    low = -np.inf if placement.low is None else np.array(placement.low)
+    high = np.inf if placement.high is None else np.array(placement.high)
     corners, normals = _welded(geometry)
     length = np.linalg.norm(normals, axis=1)
     # Sheets with two sides of triangles have no outside: the sum is nothing but rounding.
@@ -134,7 +143,7 @@ def lattice(placement: Placement, walls: Walls, file: str) -> Generated:
     """Corners of equal boxes that fill the placement's box, less its margin.
 
     A place inside a wall is moved to the nearest free one that rays find within half a step;
-    where there is none it is left out.
+    where there is none it is left out. Where no place at all is free, none is moved.
     """
     low, high = box_of(placement, walls.geometry, file)
     counts = _counts(placement, high - low - 2 * placement.offset_m)
@@ -175,6 +184,8 @@ def _out_of_walls(
     """The points with those in walls moved out, which of them count, and how many moved."""
     sight = walls.sight(points)
     kept = ~sight.buried
+    if not kept.any():  # a surface that is inside out: the way out would lead out of the room
+        return points, kept, 0
     stuck = np.flatnonzero(sight.buried & np.isfinite(sight.way_out).all(axis=1))
     way = sight.way_out[stuck]
     length = np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-12)

@@ -1,0 +1,85 @@
+"""Light of probes on surfaces: the reference, in float64.
+
+``E(x, n) = max(0, Σ_j W_j(x, n) Σ_k A_k c_jk Y_k(n))`` in lux: the coefficients c of luminance are
+mixed with the weights W of `ProbeSpace.locate`, less what walls hide, and convolved with the
+cosine (`andon.harmonics`). `probes.wgsl` has the same functions by the same names.
+
+=========== ============================================================ ====================
+lookup      what it does                                                 costs
+=========== ============================================================ ====================
+per pixel   position and normal of each pixel                            a walk a pixel
+per vertex  `probe_illuminance` of a mesh's vertices, to be interpolated a walk a vertex
+per object  one mix at the object's middle, normals of each pixel        a walk an object
+=========== ============================================================ ====================
+
+Per object is the paper's. It is blind to what changes within the object: a train half in a tunnel.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.harmonics import basis, convolved, order_of
+from andon.transport.probes.hidden import Walls, hidden_mix
+from andon.transport.probes.space import Mix, ProbeSpace
+
+__all__ = ["ProbeLight", "probe_coefficients", "probe_illuminance", "probe_mix"]
+
+Float = NDArray[np.float64]
+
+# Points whose mixes are held at once: 36 probes of 27 numbers each, in float64.
+CHUNK = 1 << 14
+
+
+@dataclass(frozen=True, eq=False)
+class ProbeLight:
+    """A volume's light, ready to be looked up.
+
+    Attributes
+    ----------
+    space : between its probes.
+    coefficients : (n, k, 3) of luminance, cd/m², world axes; smoothed where they are to be.
+    walls : what hides probes; None: nothing does.
+    """
+
+    space: ProbeSpace
+    coefficients: Float
+    walls: Walls | None = None
+
+
+def probe_mix(
+    light: ProbeLight, points: Float, normals: Float | None = None, /, start: Mix | None = None
+) -> Mix:
+    """The probes that light points (q, 3), and their weights; of 4 or 36 probes each.
+
+    `normals` (q, 3), unit, of the surfaces that the points lie on; None: in free air. `start` is
+    an earlier mix of the same points, which have moved a little since.
+    """
+    mix = light.space.locate(points, None if start is None else start.cells)
+    return mix if light.walls is None else hidden_mix(light.walls, mix, points, normals)
+
+
+def probe_illuminance(light: ProbeLight, points: Float, normals: Float, /) -> Float:
+    """Illuminance (q, 3) in lux at points (q, 3), metres, world, that face unit normals (q, 3).
+
+    Never negative; NaN for a point or a normal that is not finite.
+    """
+    lit = convolved(light.coefficients)
+    order = order_of(lit.shape[1])
+    lux = np.empty((len(points), 3))
+    for first in range(0, len(points), CHUNK):
+        part = slice(first, first + CHUNK)
+        mix = probe_mix(light, points[part], normals[part])
+        values = basis(normals[part], order)
+        own = np.einsum("qjkc,qk->qjc", lit[mix.probes], values)
+        lux[part] = np.einsum("qj,qjc->qc", mix.weights, own)
+    return np.maximum(lux, 0)
+
+
+def probe_coefficients(light: ProbeLight, points: Float, /) -> Float:
+    """Coefficients (q, k, 3) of luminance, cd/m², at points (q, 3) in free air."""
+    mix = probe_mix(light, points)
+    return np.einsum("qj,qjkc->qkc", mix.weights, light.coefficients[mix.probes])

@@ -21,7 +21,7 @@ from andon.files.volumes import read_volume
 from andon.harmonics import irradiance
 from andon.rays import RayScene, face_normals
 from andon.transport.direct.reference import illuminance
-from worlds import block, unit, write_glb
+from worlds import block, scene, unit, write_glb
 
 
 def light_of(volume):
@@ -181,6 +181,15 @@ def test_geometry_that_is_no_manifold_is_captured(tmp_path):
     result = baked(scene_of(tmp_path, surface={"mesh": "room.glb"}, lamp=lamp))
     assert np.isfinite(light_of(result.volume)).all()
     assert (light_of(result.volume)[:, 0] > 0).all()
+
+
+def test_light_that_is_to_be_found_cannot_be_baked_from(tmp_path):
+    loaded = scene(tmp_path, ambient={"probes": True}, probes={
+        "volume": "p.glb", "place": [{"position": [0, 0, 0]}],
+    })  # fmt: skip
+    placed = placed_in(lamp_room(tmp_path))
+    with pytest.raises(InputError, match=r"ambient\.probes: is the light that a bake is to find"):
+        bake_probes(loaded, placed)
 
 
 def counted(monkeypatch, fails=()):

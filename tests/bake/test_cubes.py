@@ -228,3 +228,15 @@ def test_objects_are_seen_before_the_surface(tmp_path, engine):
     assert capture.luminance_cd_m2[0, 7, 7].min() > 0
     np.testing.assert_allclose(seen.distance_m[0, 7:9, 7:9], 1.2, rtol=0.01)
     np.testing.assert_array_equal(capture.luminance_cd_m2[1], 0)
+
+
+def test_things_that_move_are_not_seen_and_cast_no_shadow(tmp_path, engine):
+    write_glb(tmp_path / "box.glb", block((0.8, 0.8, 0.8), (0, 0, 0)))
+    box = {"mesh": "box.glb", "position": [0.5, 0.3, -0.5]}
+    keys = [{"time_seconds": t, "position": [0.5, 0.3, -0.5]} for t in (0.0, 1.0)]
+    alone, still, moving = (
+        taken(lamp_room(tmp_path, object=objects), (-0.7, 0.6, 0.9), engine)[0].luminance_cd_m2
+        for objects in ([], [box], [box | {"key": keys}])
+    )
+    np.testing.assert_array_equal(moving, alone)
+    assert np.abs(still - alone).max() > 1

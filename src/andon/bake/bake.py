@@ -319,6 +319,14 @@ def _setting(scene: Scene, placed: Placed) -> CubeSetting | None:
     nothing = scene.surface is None and not scene.object
     if nothing and all(panorama is not None for panorama in placed.panoramas):
         return None
+    if scene.has_photograph and scene.ambient is not None and scene.ambient.probes:
+        raise InputError(
+            "is the light that a bake is to find",
+            file=scene.file,
+            field="ambient.probes",
+            remedy="bake a scene without [capture] source, with a surface.mesh and the lamps of "
+            "the photograph as [[lamp]]",
+        )
     return cube_setting(scene, prepare(scene, drawn=False))
 
 

@@ -22,6 +22,8 @@ from andon.scene import Scene
 
 __all__ = ["ambient_without_photograph", "black_frames", "white_cd_m2"]
 
+_NONE = Ambient(np.ones(3), (0.0, 0.0, 0.0))
+
 
 def black_frames(scene: Scene, white: float, /) -> dict[str, CameraFrame]:
     """A black picture for each view of the rig, of the size that its camera states.
@@ -39,11 +41,13 @@ def black_frames(scene: Scene, white: float, /) -> dict[str, CameraFrame]:
 def ambient_without_photograph(scene: Scene, /) -> Ambient:
     """E0 that everything stands in: what [ambient] states, else none.
 
+    Where it is that of probes there is none either: they light all objects, the surface too.
+
     Raises `InputError` for what only a photograph has: E0 of each pixel, and lamps that are in it.
     """
     table = scene.ambient
     if table is None:
-        return Ambient(np.ones(3), (0.0, 0.0, 0.0))
+        return _NONE
     for key, remedy in (
         ("map", "state ambient.illuminance_lux"),
         ("source", "make them [[lamp]]: without a photograph they light the scene themselves"),
@@ -55,7 +59,7 @@ def ambient_without_photograph(scene: Scene, /) -> Ambient:
                 field=f"ambient.{key}",
                 remedy=remedy,
             )
-    return ambient_of(scene, {})
+    return _NONE if table.probes else ambient_of(scene, {})
 
 
 def white_cd_m2(scene: Scene, ambient: Ambient, lamps: Sequence[Lamp], /) -> float:

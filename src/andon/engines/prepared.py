@@ -14,7 +14,7 @@ from andon.engines.checks import check_lamps
 from andon.engines.moment import Moment
 from andon.engines.photographless import (
     ambient_without_photograph,
-    black_frames,
+    sky_frames,
     white_cd_m2,
 )
 from andon.engines.probes import SceneProbes, ambient_of_probes, probes_of
@@ -155,7 +155,7 @@ def _all_virtual(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen
     """Frames, light and surface of a scene without a photograph."""
     ambient = ambient_without_photograph(scene)
     lamps = resolve_lamps(scene, 0.0)
-    frames = black_frames(scene, white_cd_m2(scene, ambient, lamps)) if drawn else {}
+    frames = sky_frames(scene, lamps, white_cd_m2(scene, ambient, lamps)) if drawn else {}
     return frames, ambient, virtual_surface(scene)
 
 

@@ -11,6 +11,7 @@ from PIL import Image
 
 from andon.errors import InputError
 from andon.harmonics import basis, convolved, cube_directions, irradiance
+from andon.harmonics.conventions import to_filament
 from andon.responses import srgb_decode
 from andon.transport.probes.export import (
     EXPORTS,
@@ -20,7 +21,6 @@ from andon.transport.probes.export import (
     csv_text,
     filament_text,
     image_based_glb,
-    polynomial,
     probe_lights,
     three_json,
     unity_json,
@@ -133,7 +133,7 @@ def test_filament_by_its_own_formula(order):
     np.testing.assert_allclose(
         polynomial_value(numbers, normals()), expected(found, normals()) / np.pi, rtol=1e-12
     )
-    np.testing.assert_allclose(numbers, polynomial(found.coefficients), rtol=1e-13, atol=1e-13)
+    np.testing.assert_allclose(numbers, to_filament(found.coefficients), rtol=1e-13, atol=1e-13)
 
 
 def test_filament_is_one_probe():

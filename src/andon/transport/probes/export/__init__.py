@@ -27,7 +27,7 @@ from andon.transport.probes.export.model import (
     chosen_probe,
     probe_lights,
 )
-from andon.transport.probes.export.polynomials import filament_text, polynomial, unity_json
+from andon.transport.probes.export.polynomials import filament_text, unity_json
 from andon.transport.probes.export.table import csv_text
 from andon.transport.probes.export.three import three_json
 
@@ -40,7 +40,6 @@ __all__ = [
     "csv_text",
     "filament_text",
     "image_based_glb",
-    "polynomial",
     "probe_lights",
     "three_json",
     "unity_json",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
@@ -15,6 +15,7 @@ from andon.engines.photographless import (
     black_frames,
     white_cd_m2,
 )
+from andon.engines.probes import SceneProbes, ambient_of_probes, probes_of
 from andon.engines.reading import (
     ambient_of,
     exposure_of,
@@ -38,7 +39,7 @@ from andon.transport.direct.casters import OBJECTS, REAL, Casters
 __all__ = ["Prepared", "prepare"]
 
 # Tables and keys that the schema has and this version does not draw; a frame says so.
-LATER_TABLES = ("baked", "probes", "glass", "gaze")
+LATER_TABLES = ("baked", "glass", "gaze")
 
 LATER_KEYS = {
     "surface": ("response", "reflectance_map"),
@@ -72,6 +73,7 @@ class Prepared:
     photometry : the word that every number carries.
     ignored : tables of the scene that this version does not draw.
     sources : names of the known lamps of E0, which `lamps` has with positive and negative light.
+    probes : light that virtual objects stand in instead of E0, or None.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -84,6 +86,7 @@ class Prepared:
     photometry: Photometry = "absolute"
     ignored: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
+    probes: SceneProbes | None = None
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
@@ -104,18 +107,20 @@ class Prepared:
 def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
     """Reads all that `scene` names. Raises `InputError` for whatever does not fit.
 
-    With `drawn` False there are no frames where there is no photograph, and neither rig nor white
-    are needed: for whoever only asks for light.
+    With `drawn` False there are no frames where there is no photograph, and neither rig, white nor
+    a volume of probes are needed: for whoever makes light, as bakes do.
     """
     virtual = _virtual_groups(scene)
     lamps = (*resolve_lamps(scene, 0.0), *resolve_sources(scene, 0.0, virtual))
-    frames, ambient, surface = _seen(scene, lamps, drawn)
+    probes, notes = probes_of(scene) if drawn else (None, ())
+    seen = _photographed if scene.has_photograph else _all_virtual
+    frames, ambient, surface = seen(scene, lamps, probes, drawn)
     if frames:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
     return Prepared(
         frames=frames,
-        surface=surface,
+        surface=replace(surface, notes=(*surface.notes, *notes)),
         ambient=ambient,
         lamps=lambda time_seconds: (
             *resolve_lamps(scene, time_seconds),
@@ -127,22 +132,34 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         photometry=scene.photometry,
         ignored=_ignored(scene),
         sources=tuple(table.name for table in scene.ambient.source) if scene.ambient else (),
+        probes=probes,
     )
 
 
-def _seen(
-    scene: Scene, lamps: tuple[Lamp, ...], drawn: bool
-) -> tuple[dict[str, CameraFrame], Ambient, SurfaceModel]:
-    """Frames, light and surface of the photograph, or of a scene that has none."""
-    if not scene.has_photograph:
-        ambient = ambient_without_photograph(scene)
-        surface = virtual_surface(scene)
-        frames = black_frames(scene, white_cd_m2(scene, ambient, lamps)) if drawn else {}
-        return frames, ambient, surface
+_Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel]
+
+
+def _all_virtual(
+    scene: Scene, lamps: tuple[Lamp, ...], probes: SceneProbes | None, drawn: bool
+) -> _Seen:
+    """Frames, light and surface of a scene without a photograph."""
+    ambient = ambient_without_photograph(scene)
+    frames = black_frames(scene, white_cd_m2(scene, ambient, lamps)) if drawn else {}
+    return frames, ambient, virtual_surface(scene)
+
+
+def _photographed(
+    scene: Scene, lamps: tuple[Lamp, ...], probes: SceneProbes | None, drawn: bool
+) -> _Seen:
+    """Frames, light and surface of a photograph."""
     pictures = read_pictures(scene)
     views = {name: view_of(scene, name, picture.shape) for name, picture in pictures.items()}
-    ambient = ambient_of(scene, views)
     surface = load_surface(scene, views)
+    notes: tuple[str, ...] = ()
+    if scene.ambient is not None and scene.ambient.probes:
+        ambient, notes = ambient_of_probes(scene, probes, surface, views)
+    else:
+        ambient = ambient_of(scene, views)
     per_unit = luminance_per_unit_of(scene, ambient)
     frames = {
         name: frame_from_picture(
@@ -154,7 +171,7 @@ def _seen(
         )
         for name, picture in pictures.items()
     }
-    return frames, ambient, surface
+    return frames, ambient, replace(surface, notes=(*surface.notes, *notes))
 
 
 def _virtual_groups(scene: Scene) -> frozenset[str]:

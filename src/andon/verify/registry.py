@@ -54,6 +54,7 @@ def rows() -> tuple[Row, ...]:
         lampshade,
         penumbra,
         photometry,
+        probe_light,
         relight,
         synthetic,
     )
@@ -67,4 +68,5 @@ def rows() -> tuple[Row, ...]:
         *lampshade.ROWS,
         *photometry.ROWS,
         *harmonics.ROWS,
+        *probe_light.ROWS,
     )

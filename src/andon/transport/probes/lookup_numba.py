@@ -1,14 +1,15 @@
 """The lookup of `locate`, one point after the other, compiled: for millions of points.
 
-Each thread takes a run of points and begins at the cell of the last one while they stay near,
-else where the grid says. Numba is imported with this module and by nobody else.
+Each thread takes a run of points. A point is tried in the cell of the last one; else the walk
+begins there while they stay near, or where the grid says. Numba is imported with this module and by
+nobody else; `lookup_hull` has what happens outside.
 """
 
 # Numba knows its arguments, and needs none of the annotations that a checker would ask for.
 # pyright: basic
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit, prange
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from andon.transport.probes.locate import FAR, SEARCH_INSIDE
 from andon.transport.probes.lookup import INSIDE, step_limit
-from andon.transport.probes.lookup_facets import SAME_POINT, VISIBLE
+from andon.transport.probes.lookup_hull import OPTIONS, search_hull, walk_hull
 from andon.transport.probes.space import ProbeSpace
 
 __all__ = ["Compiled", "compiled", "locate_all", "lookup_all"]
@@ -25,68 +26,73 @@ __all__ = ["Compiled", "compiled", "locate_all", "lookup_all"]
 RUN = 1024
 # Share of the extent by which a point is surely in front of a hull's facet.
 CLEARLY = 1e-6
-OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True}
 
 
 class Compiled(NamedTuple):
-    """Arrays of a `ProbeSpace`, packed so that what is read together lies together.
+    """Arrays of a `ProbeSpace`, packed: what is read together lies together.
 
-    `cells`: (m, 12) rows of the inverse, then the origin; `links`: (m, 8) neighbours, corners.
+    Few of them, since each travels through every call. Rows are
+    `cells` (m, 12): inverse, origin; `links` (m, 8): neighbours, corners;
+    `facets` (f, 18): three corners, normal, gradients; `edges` (f, 7): probes, neighbours, cell;
+    `zones` (z, 10): middle, extent, origin and step of the grid;
+    `ranges` (z, 9): first and count of cells, of facets, shape and first of the grid, step limit.
     """
 
-    positions: NDArray[np.float64]
     cells: NDArray[np.float64]
     links: NDArray[np.int32]
-    facets: NDArray[np.int32]
-    facet_neighbours: NDArray[np.int32]
-    facet_cells: NDArray[np.int32]
-    facet_normals: NDArray[np.float64]
-    facet_gradients: NDArray[np.float64]
-    zone_cells: NDArray[np.int32]
-    zone_facets: NDArray[np.int32]
-    zone_middles: NDArray[np.float64]
-    zone_extents: NDArray[np.float64]
+    facets: NDArray[np.float64]
+    edges: NDArray[np.int32]
+    zones: NDArray[np.float64]
+    ranges: NDArray[np.int32]
     boxes: NDArray[np.float64]
     box_zones: NDArray[np.int32]
-    grid_origins: NDArray[np.float64]
-    grid_steps: NDArray[np.float64]
-    grid_shapes: NDArray[np.int32]
-    grid_firsts: NDArray[np.int32]
-    grid_starts: NDArray[np.int32]
-    limits: NDArray[np.int64]
+    starts: NDArray[np.int32]
 
 
 def compiled(space: ProbeSpace, /) -> Compiled:
-    """The arrays of `space`, contiguous."""
-    cells = np.column_stack([space.inverses.reshape(-1, 9), space.origins])
-    links = np.column_stack([space.neighbours, space.corners])
-    limits = np.array([step_limit(int(count)) for count in space.zone_cells[:, 1]], np.int64)
-    own = [getattr(space, name) for name in Compiled._fields if hasattr(space, name)]
-    return Compiled(*(np.ascontiguousarray(a) for a in (own[0], cells, links, *own[1:], limits)))
+    """The arrays of `space`, packed."""
+    limits = [step_limit(int(count)) for count in space.zone_cells[:, 1]]
+    corners = space.positions[space.facets].reshape(-1, 9)
+    gradients = space.facet_gradients.reshape(-1, 6)
+    return Compiled(
+        np.column_stack([space.inverses.reshape(-1, 9), space.origins]),
+        np.column_stack([space.neighbours, space.corners]),
+        np.column_stack([corners, space.facet_normals, gradients]),
+        np.column_stack([space.facets, space.facet_neighbours, space.facet_cells]),
+        np.column_stack(
+            [space.zone_middles, space.zone_extents, space.grid_origins, space.grid_steps]
+        ),
+        np.column_stack(
+            [space.zone_cells, space.zone_facets, space.grid_shapes, space.grid_firsts, limits]
+        ).astype(np.int32),
+        np.ascontiguousarray(space.boxes),
+        np.ascontiguousarray(space.box_zones),
+        np.ascontiguousarray(space.grid_starts),
+    )
 
 
 @njit(**OPTIONS)
-def _zone_of(s, x, y, z):
-    if len(s.boxes) == 1:
-        return s.box_zones[0]
+def _zone_of(boxes, box_zones, x, y, z):
+    if len(boxes) == 1:
+        return box_zones[0]
     best, least = 0, np.inf
-    for b in range(len(s.boxes)):
-        dx = max(s.boxes[b, 0, 0] - x, x - s.boxes[b, 1, 0], 0.0)
-        dy = max(s.boxes[b, 0, 1] - y, y - s.boxes[b, 1, 1], 0.0)
-        dz = max(s.boxes[b, 0, 2] - z, z - s.boxes[b, 1, 2], 0.0)
+    for b in range(len(boxes)):
+        dx = max(boxes[b, 0, 0] - x, x - boxes[b, 1, 0], 0.0)
+        dy = max(boxes[b, 0, 1] - y, y - boxes[b, 1, 1], 0.0)
+        dz = max(boxes[b, 0, 2] - z, z - boxes[b, 1, 2], 0.0)
         square = dx * dx + dy * dy + dz * dz
         if square < least:
             best, least = b, square
-    return s.box_zones[best]
+    return box_zones[best]
 
 
 @njit(**OPTIONS)
-def _drawn_near(s, zone, x, y, z):
-    mx, my, mz = s.zone_middles[zone]
-    reach = FAR * s.zone_extents[zone]
-    dx = min(max(x - mx, -1e300), 1e300)
-    dy = min(max(y - my, -1e300), 1e300)
-    dz = min(max(z - mz, -1e300), 1e300)
+def _drawn_near(zone, x, y, z):
+    """As `locate._drawn_near`; `zone`: a row of `zones`."""
+    reach = FAR * zone[3]
+    dx = min(max(x - zone[0], -1e300), 1e300)
+    dy = min(max(y - zone[1], -1e300), 1e300)
+    dz = min(max(z - zone[2], -1e300), 1e300)
     largest = max(abs(dx), abs(dy), abs(dz))
     if largest <= reach / 2:
         return x, y, z
@@ -94,21 +100,25 @@ def _drawn_near(s, zone, x, y, z):
     share = reach / largest / length
     if share >= 1:
         return x, y, z
-    return mx + share * dx, my + share * dy, mz + share * dz
+    return zone[0] + share * dx, zone[1] + share * dy, zone[2] + share * dz
 
 
 @njit(**OPTIONS)
-def _grid_start(s, zone, x, y, z):
-    o, t, n = s.grid_origins[zone], s.grid_steps[zone], s.grid_shapes[zone]
-    i = int(min(max(np.floor((x - o[0]) / t[0]), 0.0), n[0] - 1.0))
-    j = int(min(max(np.floor((y - o[1]) / t[1]), 0.0), n[1] - 1.0))
-    k = int(min(max(np.floor((z - o[2]) / t[2]), 0.0), n[2] - 1.0))
-    return s.grid_starts[s.grid_firsts[zone] + i + n[0] * (j + n[1] * k)]
+def _box(at, origin, step, count):
+    return int(min(max(np.floor((at - origin) / step), 0.0), count - 1.0))
 
 
 @njit(**OPTIONS)
-def _weights(s, cell, x, y, z):
-    m = s.cells[cell]
+def _grid_start(zone, range_, starts, x, y, z):
+    i = _box(x, zone[4], zone[7], range_[4])
+    j = _box(y, zone[5], zone[8], range_[5])
+    k = _box(z, zone[6], zone[9], range_[6])
+    return starts[range_[7] + i + range_[4] * (j + range_[5] * k)]
+
+
+@njit(**OPTIONS)
+def _weights(m, x, y, z):
+    """Coordinates in the tetrahedron whose row of `cells` is `m`."""
     x, y, z = x - m[9], y - m[10], z - m[11]
     a = m[0] * x + m[1] * y + m[2] * z
     b = m[3] * x + m[4] * y + m[5] * z
@@ -117,261 +127,155 @@ def _weights(s, cell, x, y, z):
 
 
 @njit(**OPTIONS)
-def _walk_cells(s, zone, cell, x, y, z):
-    """The tetrahedron that holds the point, or −1 − the facet through which the walk has left."""
+def _walk(cells, links, limit, cell, x, y, z):
+    """Where a walk ends: a tetrahedron, or −1 − the facet through which it has left; and whether it
+    did."""
     before = -1
-    for _ in range(s.limits[zone]):
-        w = _weights(s, cell, x, y, z)
+    for _ in range(limit):
+        w = _weights(cells[cell], x, y, z)
         inner, face = INSIDE, -1
         outer, exit_face = INSIDE, -1
         for k in range(4):
-            beyond = s.links[cell, k]
+            beyond = links[cell, k]
             if beyond < 0:
                 if w[k] < outer:
                     outer, exit_face = w[k], k
             elif w[k] < inner and beyond != before:
                 inner, face = w[k], k
         if face < 0:
-            return cell if exit_face < 0 else s.links[cell, exit_face]
-        before, cell = cell, s.links[cell, face]
-    return _search(s, zone, x, y, z)
+            return (cell if exit_face < 0 else links[cell, exit_face]), True
+        before, cell = cell, links[cell, face]
+    return cell, False
 
 
 @njit(**OPTIONS)
-def _search(s, zone, x, y, z):
-    """As `_walk_cells`, by looking at all."""
-    first, count = s.zone_cells[zone]
+def _search(cells, range_, x, y, z):
+    """The tetrahedron of a zone that holds a point best, and its smallest weight there."""
     found, best = -1, -np.inf
-    for cell in range(first, first + count):
-        w = _weights(s, cell, x, y, z)
+    for cell in range(range_[0], range_[0] + range_[1]):
+        w = _weights(cells[cell], x, y, z)
         least = min(min(w[0], w[1]), min(w[2], w[3]))
         if least > best:
             found, best = cell, least
-    if best >= SEARCH_INSIDE:
-        return found
-    first, count = s.zone_facets[zone]
-    found, best = -1, np.inf
-    for facet in range(first, first + count):
-        w = _closest(s, facet, x, y, z)
-        c = _on_facet(s, facet, w)
-        square = (c[0] - x) ** 2 + (c[1] - y) ** 2 + (c[2] - z) ** 2
-        if square < best:
-            found, best = facet, square
-    return -1 - found
+    return found, best
 
 
 @njit(**OPTIONS)
-def _closest(s, facet, x, y, z):
-    """As `lookup_facets.closest_weights`."""
-    pa = s.positions[s.facets[facet, 0]]
-    pb = s.positions[s.facets[facet, 1]]
-    pc = s.positions[s.facets[facet, 2]]
-    bx, by, bz = pb[0] - pa[0], pb[1] - pa[1], pb[2] - pa[2]
-    cx, cy, cz = pc[0] - pa[0], pc[1] - pa[1], pc[2] - pa[2]
-    x, y, z = x - pa[0], y - pa[1], z - pa[2]
-    d1, d2 = bx * x + by * y + bz * z, cx * x + cy * y + cz * z
-    if d1 <= 0 and d2 <= 0:
-        return 1.0, 0.0, 0.0
-    across = bx * cx + by * cy + bz * cz
-    d3, d4 = d1 - (bx * bx + by * by + bz * bz), d2 - across
-    if d3 >= 0 and d4 <= d3:
-        return 0.0, 1.0, 0.0
-    g = s.facet_gradients[facet]
-    wc = g[1, 0] * x + g[1, 1] * y + g[1, 2] * z
-    if wc <= 0 and d1 >= 0 and d3 <= 0:
-        return 1 - d1 / (d1 - d3), d1 / (d1 - d3), 0.0
-    d5, d6 = d1 - across, d2 - (cx * cx + cy * cy + cz * cz)
-    if d6 >= 0 and d5 <= d6:
-        return 0.0, 0.0, 1.0
-    wb = g[0, 0] * x + g[0, 1] * y + g[0, 2] * z
-    if wb <= 0 and d2 >= 0 and d6 <= 0:
-        return 1 - d2 / (d2 - d6), 0.0, d2 / (d2 - d6)
-    wa = 1 - wb - wc
-    if wa <= 0 and d4 >= d3 and d5 >= d6:
-        t = (d4 - d3) / ((d4 - d3) + (d5 - d6))
-        return 0.0, 1 - t, t
-    wa, wb, wc = min(max(wa, 0.0), 1.0), min(max(wb, 0.0), 1.0), min(max(wc, 0.0), 1.0)
-    total = wa + wb + wc
-    return wa / total, wb / total, wc / total
+def _found(s, zone, begin, x, y, z):
+    """The tetrahedron of a point; −1 − f: it is outside, near the facet f."""
+    cell = begin
+    if begin < 0:
+        cell = s.edges[-1 - begin, 6]
+        if cell < 0:
+            return begin
+        f = s.facets[-1 - begin]
+        height = f[9] * (x - f[0]) + f[10] * (y - f[1]) + f[11] * (z - f[2])
+        if height > CLEARLY * s.zones[zone, 3]:
+            return begin
+    end, ended = _walk(s.cells, s.links, s.ranges[zone, 8], cell, x, y, z)
+    if ended:
+        return end
+    cell, least = _search(s.cells, s.ranges[zone], x, y, z)
+    if least >= SEARCH_INSIDE:
+        return cell
+    return -1 - search_hull(s.facets, s.ranges[zone, 2], s.ranges[zone, 3], x, y, z)
 
 
 @njit(**OPTIONS)
-def _on_facet(s, facet, w):
-    a = s.positions[s.facets[facet, 0]]
-    b = s.positions[s.facets[facet, 1]]
-    c = s.positions[s.facets[facet, 2]]
-    return (
-        w[0] * a[0] + w[1] * b[0] + w[2] * c[0],
-        w[0] * a[1] + w[1] * b[1] + w[2] * c[1],
-        w[0] * a[2] + w[1] * b[2] + w[2] * c[2],
-    )
-
-
-@njit(**OPTIONS)
-def _height(s, facet, x, y, z):
-    """Above the facet's plane, and the distance to its first corner."""
-    a, n = s.positions[s.facets[facet, 0]], s.facet_normals[facet]
-    x, y, z = x - a[0], y - a[1], z - a[2]
-    return n[0] * x + n[1] * y + n[2] * z, np.sqrt(x * x + y * y + z * z)
-
-
-@njit(**OPTIONS)
-def _gain(s, facet, at, extent, x, y, z):
-    """How much the square of the distance falls from `at` to the closest point of the facet."""
-    height, away = _height(s, facet, x, y, z)
-    if s.facet_cells[facet] >= 0 and height < VISIBLE * (away + extent):
-        return 0.0
-    c = _on_facet(s, facet, _closest(s, facet, x, y, z))
-    mx, my, mz = c[0] - at[0], c[1] - at[1], c[2] - at[2]
-    if mx * mx + my * my + mz * mz <= (SAME_POINT * extent) ** 2:
-        return 0.0
-    return (
-        mx * (x - at[0] + (x - c[0]))
-        + my * (y - at[1] + (y - c[1]))
-        + mz * (z - at[2] + (z - c[2]))
-    )
-
-
-@njit(**OPTIONS)
-def _best_around(s, facet, corner, at, extent, x, y, z):
-    """Of the facets around a corner, the one with the largest gain; −1: none gains."""
-    best, most, probe = -1, 0.0, s.facets[facet, corner]
-    for turn in (1, 2):
-        here, at_corner = facet, corner
-        for _ in range(len(s.facets)):
-            here = s.facet_neighbours[here, (at_corner + turn) % 3]
-            if here < 0 or here == facet:
-                break
-            at_corner = 0
-            while at_corner < 2 and s.facets[here, at_corner] != probe:
-                at_corner += 1
-            gain = _gain(s, here, at, extent, x, y, z)
-            if gain > most:
-                best, most = here, gain
-        if here == facet:
-            break
-    return best
-
-
-@njit(**OPTIONS)
-def _walk_facets(s, zone, facet, x, y, z):
-    """The facet with the closest point, and the weights there."""
-    extent = s.zone_extents[zone]
-    w = _closest(s, facet, x, y, z)
-    for _ in range(len(s.facets)):
-        zeros = int(w[0] == 0) + int(w[1] == 0) + int(w[2] == 0)
-        if zeros == 0:
-            break
-        at = _on_facet(s, facet, w)
-        if zeros == 1:
-            edge = 0 if w[0] == 0 else (1 if w[1] == 0 else 2)
-            other = s.facet_neighbours[facet, edge]
-            if other >= 0 and _gain(s, other, at, extent, x, y, z) <= 0:
-                other = -1
-        else:
-            corner = 0 if w[0] != 0 else (1 if w[1] != 0 else 2)
-            other = _best_around(s, facet, corner, at, extent, x, y, z)
-        if other < 0:
-            break
-        facet, w = other, _closest(s, other, x, y, z)
-    return facet, w
-
-
-@njit(**OPTIONS)
-def _locate(s, zone, begin, x, y, z):
-    """(cell or −1 − facet, four weights) of a point near the zone, from `begin` on."""
-    found = begin
-    if begin >= 0:
-        found = _walk_cells(s, zone, begin, x, y, z)
-    elif s.facet_cells[-1 - begin] >= 0:
-        height, _ = _height(s, -1 - begin, x, y, z)
-        if height <= CLEARLY * s.zone_extents[zone]:
-            found = _walk_cells(s, zone, s.facet_cells[-1 - begin], x, y, z)
+def _place(s, zone, begin, x, y, z):
+    """(cell, or −1 − facet, and four weights) of a finite point."""
+    found = _found(s, zone, begin, x, y, z)
     if found >= 0:
-        a, b, c, d = _weights(s, found, x, y, z)
-        a, b, c, d = max(a, 0.0), max(b, 0.0), max(c, 0.0), max(d, 0.0)
-        total = a + b + c + d
-        return found, a / total, b / total, c / total, d / total
-    facet, w = _walk_facets(s, zone, -1 - found, x, y, z)
-    return -1 - facet, w[0], w[1], w[2], 0.0
+        return found, _held(_weights(s.cells[found], x, y, z))
+    facet, w = walk_hull(s.facets, s.edges, s.zones[zone, 3], -1 - found, x, y, z)
+    return -1 - facet, (w[0], w[1], w[2], 0.0)
 
 
 @njit(**OPTIONS)
-def _of_zone(s, zone, cell):
+def _held(w):
+    """Without what rounding put below 0; sum 1."""
+    a, b, c, d = max(w[0], 0.0), max(w[1], 0.0), max(w[2], 0.0), max(w[3], 0.0)
+    total = a + b + c + d
+    return a / total, b / total, c / total, d / total
+
+
+@njit(**OPTIONS)
+def _next(s, zone, last, near, x, y, z):
+    """As `_place`, of a point in a zone; `last`: where to begin, if `near`."""
+    x, y, z = _drawn_near(s.zones[zone], x, y, z)
+    if not near:
+        last = _grid_start(s.zones[zone], s.ranges[zone], s.starts, x, y, z)
+    return _place(s, zone, last, x, y, z)
+
+
+@njit(**OPTIONS)
+def _is_near(zone, x, y, z, u, v, w):
+    """Whether two points are no more than a box of the grid apart."""
+    return abs(x - u) <= zone[7] and abs(y - v) <= zone[8] and abs(z - w) <= zone[9]
+
+
+@njit(**OPTIONS)
+def _of_zone(range_, cell):
     """Whether a cell, or −1 − facet, is one of the zone's."""
     if cell >= 0:
-        first, count = s.zone_cells[zone]
-        return first <= cell < first + count
-    first, count = s.zone_facets[zone]
-    return first <= -1 - cell < first + count
-
-
-@njit(**OPTIONS)
-def _next(s, point, last, last_zone, last_at):
-    """As `_locate`, of any point (3,), and its zone and place; `last` may be of another zone."""
-    x, y, z = point[0], point[1], point[2]
-    zone = _zone_of(s, x, y, z)
-    x, y, z = _drawn_near(s, zone, x, y, z)
-    step = s.grid_steps[zone]
-    near = (
-        zone == last_zone
-        and abs(x - last_at[0]) <= step[0]
-        and abs(y - last_at[1]) <= step[1]
-        and abs(z - last_at[2]) <= step[2]
-    )
-    begin = last if near else _grid_start(s, zone, x, y, z)
-    return _locate(s, zone, begin, x, y, z), zone, (x, y, z)
-
-
-@njit(**OPTIONS)
-def _is_finite(point):
-    return np.isfinite(point[0]) and np.isfinite(point[1]) and np.isfinite(point[2])
+        return range_[0] <= cell < range_[0] + range_[1]
+    return range_[2] <= -1 - cell < range_[2] + range_[3]
 
 
 @njit(**OPTIONS)
 def _locate_run(s, points, start, probes, weights, cells):
-    last, zone, at = 0, -1, (0.0, 0.0, 0.0)
+    last, last_zone, u, v, w = 0, -1, 0.0, 0.0, 0.0
     for i in range(len(points)):
-        if not _is_finite(points[i]):
-            weights[i], probes[i], cells[i] = np.nan, 0, s.grid_starts[0]
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        if not np.isfinite(x + y + z) and not (
+            np.isfinite(x) and np.isfinite(y) and np.isfinite(z)
+        ):
+            weights[i], probes[i], cells[i] = np.nan, 0, s.starts[0]
             continue
+        zone = _zone_of(s.boxes, s.box_zones, x, y, z)
         if len(start) > 0:
-            last, zone, at = _given(s, points[i], start[i])
-        (last, a, b, c, d), zone, at = _next(s, points[i], last, zone, at)
+            last, near = start[i], _of_zone(s.ranges[zone], start[i])
+        else:
+            near = zone == last_zone and _is_near(s.zones[zone], x, y, z, u, v, w)
+        last, share = _next(s, zone, last, near, x, y, z)
+        last_zone, u, v, w = zone, x, y, z
         cells[i] = last
-        weights[i, 0], weights[i, 1], weights[i, 2], weights[i, 3] = a, b, c, d
         for k in range(4):
-            probes[i, k] = s.links[last, 4 + k] if last >= 0 else s.facets[-1 - last, k % 3]
-
-
-@njit(**OPTIONS)
-def _given(s, point, start):
-    """A last place as `_next` wants it: here, in `start`, if that is of the zone."""
-    zone = _zone_of(s, point[0], point[1], point[2])
-    at = _drawn_near(s, zone, point[0], point[1], point[2])
-    return start, zone if _of_zone(s, zone, start) else -1, at
+            weights[i, k] = share[k]
+            probes[i, k] = s.links[last, 4 + k] if last >= 0 else s.edges[-1 - last, k % 3]
 
 
 @njit(**OPTIONS)
 def _lookup_run(s, points, values, result):
-    last, zone, at = 0, -1, (0.0, 0.0, 0.0)
+    cells, links = s.cells, s.links
+    last, last_zone, u, v, w = -1, -1, 0.0, 0.0, 0.0
     for i in range(len(points)):
-        if not _is_finite(points[i]):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        zone = _zone_of(s.boxes, s.box_zones, x, y, z)
+        if last >= 0 and zone == last_zone:
+            share = _weights(cells[last], x, y, z)
+            if min(min(share[0], share[1]), min(share[2], share[3])) >= 0:
+                p = links[last]
+                _mix(values, p[4], p[5], p[6], p[7], share, result[i])
+                continue
+        if not (np.isfinite(x) and np.isfinite(y) and np.isfinite(z)):
             result[i] = np.nan
             continue
-        (last, a, b, c, d), zone, at = _next(s, points[i], last, zone, at)
+        near = zone == last_zone and _is_near(s.zones[zone], x, y, z, u, v, w)
+        last, share = _next(s, zone, last, near, x, y, z)
+        last_zone, u, v, w = zone, x, y, z
         if last >= 0:
-            p = s.links[last]
-            _mix(values, p[4], p[5], p[6], p[7], a, b, c, d, result[i])
+            p = links[last]
+            _mix(values, p[4], p[5], p[6], p[7], share, result[i])
         else:
-            p = s.facets[-1 - last]
-            _mix(values, p[0], p[1], p[2], p[0], a, b, c, 0.0, result[i])
+            p = s.edges[-1 - last]
+            _mix(values, p[0], p[1], p[2], p[0], share, result[i])
 
 
 @njit(**OPTIONS)
-def _mix(values, p, q, r, s, a, b, c, d, result):
+def _mix(values, p, q, r, s, share, result):
     kind = values.dtype.type
-    a, b, c, d = kind(a), kind(b), kind(c), kind(d)
+    a, b, c, d = kind(share[0]), kind(share[1]), kind(share[2]), kind(share[3])
     first, second, third, fourth = values[p], values[q], values[r], values[s]
     for k in range(len(result)):
         result[k] = a * first[k] + b * second[k] + c * third[k] + d * fourth[k]

@@ -49,7 +49,6 @@ from andon.files.meshes.model import MeshFile, MeshLight
 
 __all__ = [
     "GltfNode",
-    "default",
     "read_gltf",
     "read_gltf_animated",
     "read_gltf_lights",

@@ -291,8 +291,8 @@ class _Bake:
             return ()
         walls = Walls(joined(list(self.setting.geometry)))
         buried = walls.sight(self.placed.capture_positions[self.own]).buried
-        numbers = np.array(self.own)[buried].tolist()
-        return tuple(self.placed.names[number] for number in numbers)
+        names = self.placed.names
+        return tuple(names[n] for n, inside in zip(self.own, buried, strict=True) if inside)
 
 
 def _table(scene: Scene) -> Probes:

@@ -38,10 +38,12 @@ def _add(state: Any, value: Any) -> None:
         _text(state, f"text {value}")
     elif value is None or isinstance(value, bool | np.bool_):
         _text(state, f"{value}")
-    elif isinstance(value, int | np.integer):
-        _text(state, f"int {int(value)}")
-    elif isinstance(value, float | np.floating):
-        state.update(b"float" + struct.pack("<d", float(value)))
+    elif isinstance(value, int):
+        _text(state, f"int {value}")
+    elif isinstance(value, float):  # float64 as well
+        state.update(b"float" + struct.pack("<d", value))
+    elif isinstance(value, np.generic):
+        _add(state, value.item())
     elif isinstance(value, tuple | list):
         _many(state, "list", cast("Iterable[Any]", value))
     elif isinstance(value, frozenset | set):

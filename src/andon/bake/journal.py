@@ -105,8 +105,7 @@ def _packed(result: Result) -> bytes:
     for name in sorted(result):
         title = np.frombuffer(name.encode(), np.uint8)
         np.lib.format.write_array(stream, title, allow_pickle=False)
-        values = np.ascontiguousarray(result[name])
-        np.lib.format.write_array(stream, values, allow_pickle=False)
+        np.lib.format.write_array(stream, np.asarray(result[name]), allow_pickle=False)
     body = stream.getvalue()
     return hashlib.sha256(body).digest() + body
 

@@ -59,14 +59,17 @@ def zones_of(probes: Probes, placed: Placed, file: str, /) -> tuple[Zone, ...]:
 
 def _inside(boxes: Float | None, points: Float) -> NDArray[np.bool_]:
     assert boxes is not None
-    low, high = boxes[:, 0, None], boxes[:, 1, None]
-    return ((points >= low) & (points <= high)).all(axis=-1).any(axis=0)
+    inside = np.zeros(len(points), bool)
+    for low, high in boxes:
+        inside |= ((points >= low) & (points <= high)).all(axis=1)
+    return inside
 
 
 def far_m(placed: Placed, cells: Cells, geometry: Sequence[Geometry], /) -> float:
     """What no surface counts as in the distances of the probes, metres.
 
     The longest edge between joined probes, and some more; of a single probe the size of the scene.
+    Rounded up to a power of √2, so that moving one probe leaves what others captured as it is.
     """
     joined = [cells.corners[:, [i, j]] for i in range(4) for j in range(i)]
     joined += [cells.facets[:, [i, j]] for i in range(3) for j in range(i)]
@@ -74,7 +77,7 @@ def far_m(placed: Placed, cells: Cells, geometry: Sequence[Geometry], /) -> floa
     ends = placed.positions[pairs]
     longest = float(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max(initial=0.0))
     if longest > 0:
-        return REACH * longest
+        return float(2.0 ** (np.ceil(2 * np.log2(REACH * longest)) / 2))
     points = [part.positions for part in geometry if len(part.positions)]
     if not points:
         return FARTHEST_M

@@ -54,6 +54,7 @@ def rows() -> tuple[Row, ...]:
         lampshade,
         penumbra,
         photometry,
+        probe_capture,
         probe_light,
         relight,
         synthetic,
@@ -67,6 +68,7 @@ def rows() -> tuple[Row, ...]:
         *synthetic.ROWS,
         *lampshade.ROWS,
         *photometry.ROWS,
+        *probe_capture.ROWS,
         *harmonics.ROWS,
         *probe_light.ROWS,
     )

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from andon.files import write_volume
+from andon.files.volumes import rounded
+from andon.transport.probes.export import EXPORTS, ExportUnit, probe_lights
 from volume_files import flat_volume, two_rooms
 
 from .command import run_andon, run_refused
@@ -64,3 +66,77 @@ def test_info_refuses_what_is_no_volume(capfd, folder):
         capfd, folder, "probes", "info", "x.glb"
     )
     assert "must exist" in run_refused(capfd, folder, "probes", "info", "none.glb")
+
+
+FORMATS = {"three": ".json", "gltf": ".glb", "unity": ".json", "filament": ".txt", "csv": ".csv"}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_export_writes_what_the_library_gives(capfd, folder, name):
+    volume = rounded(two_rooms())
+    light = probe_lights(volume, volume.states["night"])[3]
+    out = f"out{FORMATS[name]}"
+    outcome = run_andon(
+        capfd, "probes", "export", "two.glb", "--format", name, "--probe", "probe 3",
+        "--state", "night", "--white-cd-m2", "20", "-o", out,
+    )  # fmt: skip
+    assert outcome.code == 0, outcome.err
+    assert outcome.out.splitlines() == [out]
+    assert "1.0 is a luminance of 20 cd/m² (absolute)" in outcome.err
+    expected = EXPORTS[name].write([light], ExportUnit("absolute", 20.0))
+    assert (folder / out).read_bytes() == expected
+
+
+def test_export_prints_text_without_a_file(capfd, folder):
+    outcome = run_andon(capfd, "probes", "export", "two.glb", "--format", "csv")
+    assert outcome.code == 0, outcome.err
+    assert len(outcome.out.splitlines()) == 11
+    assert outcome.err == "andon: unit of light: cd/m² (absolute)\n"
+
+
+def test_export_between_probes_and_states(capfd, folder):
+    """In the middle of an edge between probes 0 and 1, in the middle of day and night."""
+    outcome = run_andon(
+        capfd, "probes", "export", "two.glb", "--format", "csv", "--at", "0.5,0,0",
+        "--state", "day", "--blend-state", "night", "--blend", "0.5",
+    )  # fmt: skip
+    assert outcome.code == 0, outcome.err
+    volume = rounded(two_rooms())
+    expected = sum(values[:2].sum(axis=0) for values in volume.states.values()) / 4
+    row = outcome.out.splitlines()[1].split(",")
+    found = np.array(row[-27:], float).reshape(9, 3)
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def test_export_outside_takes_the_nearest_point_of_the_hull(capfd, folder):
+    outcome = run_andon(
+        capfd, "probes", "export", "two.glb", "--format", "csv", "--at", "-1,0,2"
+    )  # below and left of probe 0, towards which both axes point
+    row = outcome.out.splitlines()[1].split(",")
+    volume = rounded(two_rooms())
+    np.testing.assert_allclose(
+        np.array(row[-27:], float).reshape(9, 3), volume.states["day"][0], rtol=1e-9
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--format", "unty"), "did you mean 'unity'?"),
+        (("--format", "gltf"), "the format gltf is no text; give -o FILE.glb"),
+        (("--format", "gltf", "-o", "two.glb"), "is also the input"),
+        (("--format", "three", "-o", "x.glb"), "must end in .json"),
+        (("--format", "three", "-o", "none/x.json"), "folder 'none' does not exist"),
+        (("--format", "filament"), "holds one probe; choose a probe"),
+        (("--format", "csv", "--probe", "prob 3"), "did you mean 'probe 3'?"),
+        (("--format", "csv", "--probe", "12"), "probe: must be 0…9, got 12"),
+        (("--format", "csv", "--at", "1,2"), "must be three numbers x,y,z"),
+        (("--format", "csv", "--at", "1,2,nan"), "must be three numbers x,y,z"),
+        (("--format", "csv", "--at", "1,2,3", "--probe", "1"), "give one of --probe and --at"),
+        (("--format", "csv", "--state", "nigt"), "did you mean 'night'?"),
+        (("--format", "csv", "--blend", "0.5"), "blend: needs blend_state"),
+        (("--format", "csv", "--white-cd-m2", "0"), "must be > 0 cd/m²"),
+    ],
+)
+def test_export_refusals(capfd, folder, words, message):
+    assert message in run_refused(capfd, folder, "probes", "export", "two.glb", *words)

@@ -2,20 +2,27 @@
 
 import json
 import struct
+import tracemalloc
 from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from andon.errors import InputError
 from andon.files import DEFAULT_LIMITS, read_mesh, read_volume, write_volume
-from andon.files.volumes import Zone, check_volume, rounded
+from andon.files.volumes import ProbeVolume, Zone, check_volume, rounded
 from andon.files.volumes.write import volume_bytes
+from andon.transport.probes.cells import build_cells
+from andon.transport.probes.space import ProbeSpace
+from requirements import required
 from volume_files import bipyramid, flat_volume, light, two_rooms
 
 from .specimens import GLTF_BINARY, glb, gltf_json
 
 EXTENSION = "ANDON_light_probes"
+SEED = 5
 KINDS = ("plane", "line", "point", "cells")
 
 
@@ -312,3 +319,120 @@ def test_a_zone_may_share_a_probe_with_another():
     check_volume(replace(volume, zones=zones))
     assert len(positions) == 5
     assert len(cells.facets) == 6
+
+
+JSON_VALUES = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(-2, 12),
+    st.sampled_from([2**31, 10**30, 1e308, -0.5, "", "x", "absolute", "VEC3", 5125, 5126, "day"]),
+    st.lists(st.integers(0, 12), max_size=4),
+    st.dictionaries(st.sampled_from(["name", "probes", "count"]), st.integers(0, 3)),
+)
+
+
+@settings(
+    max_examples=200,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@given(
+    in_extension=st.booleans(),
+    place=st.lists(st.integers(0, 20), min_size=1, max_size=5),
+    value=JSON_VALUES,
+)
+def test_wrong_values_in_any_place_are_refused_or_read(tmp_path, in_extension, place, value):
+    document, binary = parsed(volume_bytes(two_rooms(0)))
+    at = document["extensions"][EXTENSION] if in_extension else document
+    for step in place:
+        keys = list(at) if isinstance(at, dict) else list(range(len(at)))
+        key = keys[step % len(keys)]
+        if step == place[-1] or not isinstance(at[key], dict | list) or not at[key]:
+            at[key] = value
+            break
+        at = at[key]
+    path = tmp_path / "a.glb"
+    path.write_bytes(glb(document, binary))
+    message = ""
+    try:
+        check_volume(read_volume(path))
+    except InputError as error:
+        message = str(error)
+    assert "\n" not in message
+
+
+@settings(
+    max_examples=150,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@given(changes=st.lists(st.tuples(st.floats(0, 1), st.integers(0, 255)), min_size=1, max_size=3))
+def test_damaged_numbers_never_give_cells_that_do_not_fit(tmp_path, changes):
+    """Only the binary chunk: the JSON is sound, what the arrays say is not."""
+    document, binary = parsed(volume_bytes(two_rooms(0)))
+    data = bytearray(binary)
+    for place, value in changes:
+        data[min(int(place * len(data)), len(data) - 1)] = value
+    path = tmp_path / "a.glb"
+    path.write_bytes(glb(document, bytes(data)))
+    try:
+        volume = read_volume(path)
+    except InputError:
+        return
+    assert np.isfinite(ProbeSpace(volume).locate(np.zeros((1, 3))).weights).all()
+
+
+@pytest.mark.parametrize("kind", ["lattice", "random", "plane", "line"])
+def test_cells_of_rounded_positions_pass(kind, tmp_path):
+    """What is joined here is what the reader accepts, lattices with their slivers too."""
+    required("scipy")
+    generator = np.random.default_rng(SEED)
+    positions = {
+        "lattice": np.stack(np.meshgrid(*[np.arange(6) * 0.7 + 0.1] * 3), axis=-1).reshape(-1, 3),
+        "random": generator.uniform(-20, 20, (300, 3)),
+        "plane": generator.uniform(-5, 5, (60, 3)) * [1, 0, 1],
+        "line": generator.uniform(-5, 5, (20, 1)) * np.array([[1, 2, 3.0]]),
+    }[kind]
+    count = len(positions)
+    bare = ProbeVolume(
+        positions,
+        positions,
+        ("probe",) * count,
+        ("general",) * count,
+        np.full(count, np.inf),
+        {"default": light(count)},
+        (Zone("all", np.arange(count, dtype=np.int32)),),
+    )
+    thin = rounded(bare)
+    volume = replace(thin, cells=build_cells(thin.positions, thin.zones))
+    assert_same(read_volume(write_volume(tmp_path / "a.glb", volume)), volume)
+
+
+def test_ten_thousand_probes_are_checked_and_read_in_moderate_memory(tmp_path):
+    """A file's worth of memory, some times over; nothing grows with the square of the probes."""
+    required("scipy")
+    generator = np.random.default_rng(SEED)
+    positions = generator.uniform(0, 50, (10_000, 3))
+    count = len(positions)
+    bare = ProbeVolume(
+        positions,
+        positions,
+        tuple(map(str, range(count))),
+        ("general",) * count,
+        np.full(count, np.inf),
+        {"default": light(count)},
+        (Zone("all", np.arange(count, dtype=np.int32)),),
+    )
+    thin = rounded(bare)
+    path = write_volume(
+        tmp_path / "a.glb", replace(thin, cells=build_cells(thin.positions, thin.zones))
+    )
+    tracemalloc.start()
+    found = read_volume(path)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert found.count == count
+    assert len(found.cells.corners) > 5 * count
+    assert peak < 20 * path.stat().st_size

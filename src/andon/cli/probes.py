@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import typer
 
-from andon.cli.probes_files import probes_info
+from andon.cli import probes_bake, probes_place, probes_show
+from andon.cli.probes_files import probes_export, probes_info
 
 __all__ = ["probes_app"]
 
@@ -23,4 +24,8 @@ def _probes(context: typer.Context) -> None:
 
 
 # In the order of ``andon probes --help``.
+probes_app.command("place")(probes_place.place)
+probes_app.command("bake")(probes_bake.bake)
 probes_app.command("info")(probes_info)
+probes_app.command("show")(probes_show.show)
+probes_app.command("export")(probes_export)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.lamps import AreaLamp, Lamp, PointLamp
+from andon.quantities import Geometry
 from andon.scene import Scene
 from andon.surface.inside import is_buried
 from andon.surface.model import SurfaceModel
@@ -19,6 +20,7 @@ def check_lamps(
 ) -> None:
     """Refuses lamps that cannot light this surface."""
     is_mesh = scene.surface is not None and scene.surface.mesh is not None
+    walls = surface.real if scene.has_photograph else _first_object(surface)
     for lamp in lamps:
         if not isinstance(lamp, PointLamp | AreaLamp):
             continue
@@ -30,11 +32,7 @@ def check_lamps(
                 remedy="use directional, sky or hemisphere, or give a depth or a mesh",
             )
         # Areas may be let into a wall; points may not.
-        if (
-            is_mesh
-            and isinstance(lamp, PointLamp)
-            and is_buried(lamp.position_m, eye, surface.real)
-        ):
+        if is_mesh and isinstance(lamp, PointLamp) and is_buried(lamp.position_m, eye, walls):
             x, y, z = lamp.position_m
             raise InputError(
                 f"the lamp {lamp.name!r} at ({x:g}, {y:g}, {z:g}) is inside a wall",
@@ -42,6 +40,13 @@ def check_lamps(
                 field=f"{_place(scene, lamp)}.position",
                 remedy="move it into the space that the camera sees",
             )
+
+
+def _first_object(surface: SurfaceModel) -> Geometry:
+    """Without a photograph, the mesh is the first of the objects."""
+    objects = surface.objects
+    count = surface.objects_table[0].triangles if surface.objects_table else 0
+    return Geometry(objects.positions, objects.triangles[:count])
 
 
 def _place(scene: Scene, lamp: Lamp) -> str:

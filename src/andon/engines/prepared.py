@@ -10,6 +10,11 @@ from andon.composite.model import Ambient
 from andon.display.model import Exposure
 from andon.engines.checks import check_lamps
 from andon.engines.moment import Moment
+from andon.engines.photographless import (
+    ambient_without_photograph,
+    black_frames,
+    white_cd_m2,
+)
 from andon.engines.probes import SceneProbes, ambient_of_probes, probes_of
 from andon.engines.reading import (
     ambient_of,
@@ -28,6 +33,7 @@ from andon.quantities import CameraFrame, Photometry
 from andon.scene import Scene
 from andon.surface.load import load_surface
 from andon.surface.model import SurfaceModel
+from andon.surface.virtual import virtual_surface
 from andon.transport.direct.casters import OBJECTS, REAL, Casters
 
 __all__ = ["Prepared", "prepare"]
@@ -98,36 +104,23 @@ class Prepared:
         return Casters(tuple(groups))
 
 
-def prepare(scene: Scene, /) -> Prepared:
-    """Reads all that `scene` names. Raises `InputError` for whatever does not fit."""
-    pictures = read_pictures(scene)
-    views = {name: view_of(scene, name, picture) for name, picture in pictures.items()}
-    surface = load_surface(scene, views)
-    probes, notes = probes_of(scene)
-    if scene.ambient is not None and scene.ambient.probes:
-        ambient, more = ambient_of_probes(scene, probes, surface, views)
-        notes += more
-    else:
-        ambient = ambient_of(scene, views)
-    surface = replace(surface, notes=(*surface.notes, *notes))
-    per_unit = luminance_per_unit_of(scene, ambient)
-    frames = {
-        name: frame_from_picture(
-            picture,
-            views[name],
-            response_of(scene, picture),
-            luminance_per_unit=per_unit,
-            file=source_of(scene, name)[0],
-        )
-        for name, picture in pictures.items()
-    }
-    eye = next(iter(frames.values())).view.position
+def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
+    """Reads all that `scene` names. Raises `InputError` for whatever does not fit.
+
+    With `drawn` False there are no frames where there is no photograph, and neither rig, white nor
+    a volume of probes are needed: for whoever makes light, as bakes do.
+    """
     virtual = _virtual_groups(scene)
     lamps = (*resolve_lamps(scene, 0.0), *resolve_sources(scene, 0.0, virtual))
-    check_lamps(scene, lamps, surface, eye)
+    probes, notes = probes_of(scene) if drawn else (None, ())
+    seen = _photographed if scene.has_photograph else _all_virtual
+    frames, ambient, surface = seen(scene, lamps, probes, drawn)
+    if frames:
+        eye = next(iter(frames.values())).view.position
+        check_lamps(scene, lamps, surface, eye)
     return Prepared(
         frames=frames,
-        surface=surface,
+        surface=replace(surface, notes=(*surface.notes, *notes)),
         ambient=ambient,
         lamps=lambda time_seconds: (
             *resolve_lamps(scene, time_seconds),
@@ -141,6 +134,44 @@ def prepare(scene: Scene, /) -> Prepared:
         sources=tuple(table.name for table in scene.ambient.source) if scene.ambient else (),
         probes=probes,
     )
+
+
+_Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel]
+
+
+def _all_virtual(
+    scene: Scene, lamps: tuple[Lamp, ...], probes: SceneProbes | None, drawn: bool
+) -> _Seen:
+    """Frames, light and surface of a scene without a photograph."""
+    ambient = ambient_without_photograph(scene)
+    frames = black_frames(scene, white_cd_m2(scene, ambient, lamps)) if drawn else {}
+    return frames, ambient, virtual_surface(scene)
+
+
+def _photographed(
+    scene: Scene, lamps: tuple[Lamp, ...], probes: SceneProbes | None, drawn: bool
+) -> _Seen:
+    """Frames, light and surface of a photograph."""
+    pictures = read_pictures(scene)
+    views = {name: view_of(scene, name, picture.shape) for name, picture in pictures.items()}
+    surface = load_surface(scene, views)
+    notes: tuple[str, ...] = ()
+    if scene.ambient is not None and scene.ambient.probes:
+        ambient, notes = ambient_of_probes(scene, probes, surface, views)
+    else:
+        ambient = ambient_of(scene, views)
+    per_unit = luminance_per_unit_of(scene, ambient)
+    frames = {
+        name: frame_from_picture(
+            picture,
+            views[name],
+            response_of(scene, picture),
+            luminance_per_unit=per_unit,
+            file=source_of(scene, name)[0],
+        )
+        for name, picture in pictures.items()
+    }
+    return frames, ambient, replace(surface, notes=(*surface.notes, *notes))
 
 
 def _virtual_groups(scene: Scene) -> frozenset[str]:

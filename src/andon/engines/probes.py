@@ -113,7 +113,7 @@ def taking(model: SurfaceModel, *, has_probes: bool) -> NDArray[np.uint8]:
 def probes_of(scene: Scene, /) -> tuple[SceneProbes | None, tuple[str, ...]]:
     """The probes that a frame of `scene` needs, or None; and what is to be said of them."""
     table = scene.probes
-    wanted = any(entry.lit_by_probes for entry in scene.object)
+    wanted = any(entry.lit_by_probes for entry in scene.object) or not scene.has_photograph
     wanted |= scene.ambient is not None and scene.ambient.probes
     if table is None or not wanted:
         return None, ()

@@ -28,6 +28,7 @@ __all__ = [
     "read_pictures",
     "response_of",
     "source_of",
+    "view_names_of",
     "view_of",
 ]
 
@@ -50,6 +51,20 @@ def source_of(scene: Scene, name: str) -> tuple[str, str]:
 
 def read_pictures(scene: Scene) -> dict[str, Picture]:
     """The picture of each view of the rig."""
+    names = view_names_of(scene)
+    shared = scene.capture is not None and isinstance(scene.capture.source, str)
+    if len(names) > 1 and shared:
+        raise InputError(
+            "is one picture for two eyes",
+            file=scene.file,
+            field="capture.source",
+            remedy="give { left = …, right = … }",
+        )
+    return {name: read_picture(source_of(scene, name)[0]) for name in names}
+
+
+def view_names_of(scene: Scene) -> list[str]:
+    """The views of the rig. Raises `InputError` where there are none, or they move."""
     if scene.rig is None or not scene.rig.cameras:
         raise InputError(
             "is missing: nothing says where the pixels look",
@@ -64,23 +79,17 @@ def read_pictures(scene: Scene) -> dict[str, Picture]:
             field="rig.trajectory",
             remedy="state rig.camera.world_from_camera",
         )
-    names = [name for name, _ in scene.rig.cameras]
-    shared = scene.capture is not None and isinstance(scene.capture.source, str)
-    if len(names) > 1 and shared:
-        raise InputError(
-            "is one picture for two eyes",
-            file=scene.file,
-            field="capture.source",
-            remedy="give { left = …, right = … }",
-        )
-    return {name: read_picture(source_of(scene, name)[0]) for name in names}
+    return [name for name, _ in scene.rig.cameras]
 
 
-def view_of(scene: Scene, name: str, picture: Picture) -> View:
-    """Where the pixels of a view's picture look."""
+def view_of(scene: Scene, name: str, shape: tuple[int, int] | None) -> View:
+    """Where the pixels of a view's picture look.
+
+    `shape` is (height, width) of the picture; None: the camera says.
+    """
     assert scene.rig is not None
     camera = dict(scene.rig.cameras)[name]
-    height, width = picture.shape
+    height, width = shape or (None, None)
     if camera.file is None:
         try:
             view = camera.view(name, width=width, height=height)
@@ -90,7 +99,8 @@ def view_of(scene: Scene, name: str, picture: Picture) -> View:
             ) from error
     else:
         field = f"rig.{'camera' if name == 'mono' else name}.file"
-        view = read_camera(scene.path(camera.file, field), size=(width, height))
+        size = None if shape is None else (shape[1], shape[0])
+        view = read_camera(scene.path(camera.file, field), size=size)
         view = replace(view, name=name)
         if camera.has_pose:
             view = replace(view, world_from_camera=camera.pose())
@@ -105,10 +115,10 @@ def view_of(scene: Scene, name: str, picture: Picture) -> View:
     return view
 
 
-def response_of(scene: Scene, picture: Picture) -> Response:
-    """g of a picture: what its codes mean."""
+def response_of(scene: Scene, picture: Picture | None) -> Response:
+    """g of a picture: what its codes mean; without a picture, what codes for the screen mean."""
     table = scene.capture.response if scene.capture else None
-    if picture.encoding == "linear":
+    if picture is not None and picture.encoding == "linear":
         if table is not None and table.kind != "linear":
             raise InputError(
                 f"must be linear for an HDR picture, got {table.kind!r}",

@@ -116,7 +116,8 @@ class Capture(Table):
     source: AnySource | None = Field(
         default=None,
         description="Picture, folder, video or session; `device:0`, `openxr:` or `simulated:`; "
-        "or { left = …, right = … }.",
+        "or { left = …, right = … }. Without: there is no photograph, and the surface is "
+        "drawn from the materials of its mesh.",
     )
     response: AnyResponse | None = Field(
         default=None,
@@ -126,7 +127,8 @@ class Capture(Table):
     luminance_per_unit: Positive | None = Field(
         default=None,
         description="cd/m² of linear value 1. Default: E0/π, so that a white diffuser in the "
-        "light of the photograph is linear 1.",
+        "light of the photograph is linear 1; without a photograph: E/π of what directional, "
+        "sky and hemisphere lamps and E0 give at the start together.",
     )
     clipped_luminance_cd_m2: Positive | None = Field(
         default=None,

@@ -108,6 +108,11 @@ class Scene(Table):
         return self._file
 
     @property
+    def has_photograph(self) -> bool:
+        """There is a picture to relight; else all that is seen is virtual."""
+        return self.capture is not None and self.capture.source is not None
+
+    @property
     def photometry(self) -> Photometry:
         """``absolute`` or ``relative``: the word that every number carries."""
         return self.scene.photometry

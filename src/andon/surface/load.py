@@ -26,7 +26,14 @@ from andon.surface.occluder import decimated
 from andon.surface.textures import with_linear_textures
 from andon.surface.triangulate import thickened, triangulate_depth
 
-__all__ = ["load_surface", "object_geometry", "surface_of_depth", "surface_of_mesh"]
+__all__ = [
+    "check_textures",
+    "load_surface",
+    "mesh_geometry",
+    "object_geometry",
+    "surface_of_depth",
+    "surface_of_mesh",
+]
 
 Float = NDArray[np.float64]
 
@@ -173,7 +180,8 @@ def surface_of_mesh(
     return SurfaceModel(real, occluder=occluder, bias=_bias(bias))
 
 
-def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
+def mesh_geometry(scene: Scene, /) -> tuple[Geometry, tuple[str, ...]]:
+    """The triangles of ``surface.mesh`` in the world, and what is to be said of them."""
     assert scene.surface is not None
     assert scene.surface.mesh is not None
     path = scene.path(scene.surface.mesh, "surface.mesh")
@@ -183,7 +191,13 @@ def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
     real, notes = _read_geometry(scene, path, world_from_mesh)
     if scene.surface.reflectance is not None:
         real = _with_reflectance(real, scene.surface.reflectance)
-    _check_textures(real, scene, "surface.mesh")
+    check_textures(real, scene, "surface.mesh")
+    return real, notes
+
+
+def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
+    assert scene.surface is not None
+    real, notes = mesh_geometry(scene)
     budget = scene.surface.occluder_triangles
     model = surface_of_mesh(real, view.position, occluder_triangles=budget)
     return replace(model, notes=notes)
@@ -259,7 +273,7 @@ def _objects(scene: Scene) -> SurfaceModel:
         return SurfaceModel()
     casting = [p for p, entry in zip(parts, scene.object, strict=True) if entry.casts_shadow]
     objects = joined(parts)
-    _check_textures(objects, scene, "object")
+    check_textures(objects, scene, "object")
     return SurfaceModel(
         objects=objects,
         casters=merged(*casting) if casting else EMPTY_GEOMETRY,
@@ -288,7 +302,8 @@ def _objects_table(scene: Scene, parts: list[Geometry]) -> tuple[ObjectInfo, ...
     return tuple(table)
 
 
-def _check_textures(geometry: Geometry, scene: Scene, field: str) -> None:
+def check_textures(geometry: Geometry, scene: Scene, field: str) -> None:
+    """Refuses more textures than can be drawn; `field` is for the message."""
     textured = sum(material.texture is not None for material in geometry.materials)
     if textured > MAX_TEXTURES:
         raise InputError(

@@ -24,6 +24,7 @@ __all__ = [
     "see",
     "trace",
     "trace_body",
+    "trace_rays",
     "with_bodies",
 ]
 
@@ -48,7 +49,7 @@ def with_bodies(surface: Surface, bodies: Sequence[Body], /) -> Surface:
 def trace_body(body: Body, number: int, view: View, /) -> Surface:
     """One luminous body as `view` sees it, with the luminance of the side that is seen."""
     geometry = body.geometry
-    surface, hits, rays = _traced(geometry, view)
+    surface, hits, rays = _traced(RayScene(geometry), view, view.rays_world()[1])
     mask = surface.valid
     corners = geometry.triangles[hits.triangle]
     outside = np.einsum("ni,nij->nj", hits.barycentric, body.outside_cd_m2[corners])
@@ -136,17 +137,22 @@ def from_normals(normal: Float, view: View, /) -> Surface:
 
 def trace(geometry: Geometry, view: View, /, *, is_object: bool) -> Surface:
     """Triangles as `view` sees them, one ray through each pixel's centre."""
-    surface, hits, _ = _traced(geometry, view)
+    return trace_rays(RayScene(geometry), view, view.rays_world()[1], is_object=is_object)
+
+
+def trace_rays(scene: RayScene, view: View, directions: Float, /, *, is_object: bool) -> Surface:
+    """Triangles as unit `directions` (H, W, 3) from the place of `view` meet them."""
+    surface, hits, _ = _traced(scene, view, directions)
     surface.is_object[surface.valid] = is_object
-    _fill_material(surface, surface.valid, geometry, hits.triangle, hits.barycentric)
+    _fill_material(surface, surface.valid, scene.geometry, hits.triangle, hits.barycentric)
     return surface
 
 
-def _traced(geometry: Geometry, view: View) -> tuple[Surface, Hits, Float]:
+def _traced(scene: RayScene, view: View, directions: Float) -> tuple[Surface, Hits, Float]:
     """Where the pixels' rays meet triangles: the surface, and hits and rays of its valid pixels."""
-    origin, directions = view.rays_world()
+    geometry, origin = scene.geometry, view.position
     flat = directions.reshape(-1, 3)
-    hits = RayScene(geometry).first_hits(np.broadcast_to(origin, flat.shape), flat)
+    hits = scene.first_hits(np.broadcast_to(origin, flat.shape), flat)
     valid = hits.triangle >= 0
     rays = flat[valid]
     hits = Hits(hits.triangle[valid], hits.distance[valid], hits.barycentric[valid])

@@ -50,6 +50,7 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        harmonics,
         lampshade,
         penumbra,
         photometry,
@@ -66,5 +67,6 @@ def rows() -> tuple[Row, ...]:
         *synthetic.ROWS,
         *lampshade.ROWS,
         *photometry.ROWS,
+        *harmonics.ROWS,
         *probe_light.ROWS,
     )

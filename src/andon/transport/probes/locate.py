@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,21 +14,38 @@ from andon.transport.probes.lookup_facets import search_facets, walk_facets
 from andon.transport.probes.zones import zone_of
 
 if TYPE_CHECKING:
-    from andon.transport.probes.space import Mix, ProbeSpace
+    from andon.transport.probes.space import ProbeSpace
 
-__all__ = ["locate", "starts"]
+__all__ = ["FAR", "SEARCH_INSIDE", "Mix", "locate", "starts"]
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
 
 # Beyond a facet by less than this share, a point that no walk could place is inside.
 SEARCH_INSIDE = -1e-9
+# Extents of a zone. A point farther from its middle is looked up at this distance, in the same
+# direction: beyond, the digits of float64 do not tell one facet from the next.
+FAR = 1e8
+
+
+@dataclass(frozen=True, eq=False)
+class Mix:
+    """What each of q points takes from which probes.
+
+    Attributes
+    ----------
+    probes : (q, 4) int32 numbers of probes; not used, with weight 0, the same as another.
+    weights : (q, 4) float64, ≥ 0, sum 1; NaN for a point with a coordinate that is not finite.
+    cells : (q,) int32 the tetrahedron; −1 − f: the facet f of the hull. A start for the next time.
+    """
+
+    probes: Int
+    weights: Float
+    cells: Int
 
 
 def locate(space: ProbeSpace, points: Float, start: Int | None, /) -> Mix:
     """`ProbeSpace.locate`, clear rather than fast."""
-    from andon.transport.probes.space import Mix
-
     at = np.array(points, np.float64).reshape(-1, 3)
     valid = np.isfinite(at).all(axis=1)
     at[~valid] = 0.0
@@ -76,8 +94,6 @@ def starts(space: ProbeSpace, points: Float, zones: Int, last: Int | None, /) ->
 
 def _drawn_near(space: ProbeSpace, points: Float, zones: Int) -> Float:
     """Points farther than `FAR` are moved to that distance from the middle of their zone."""
-    from andon.transport.probes.space import FAR
-
     middles, reach = space.zone_middles[zones], FAR * space.zone_extents[zones]
     with np.errstate(over="ignore"):
         # Of a difference beyond the largest float the direction along its axes is enough.

@@ -2,44 +2,32 @@
 
 from __future__ import annotations
 
+import importlib
+import importlib.util
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.errors import InputError
+from andon.errors import InputError, MachineError
 from andon.files.volumes.model import Cells, ProbeVolume
 from andon.transport.probes.cells import build_cells
 from andon.transport.probes.delaunay import volumes
 from andon.transport.probes.grid import start_grid
+from andon.transport.probes.locate import Mix, locate
 from andon.transport.probes.zones import boxes_of, chosen_zones
 
-__all__ = ["FAR", "Mix", "ProbeSpace"]
+__all__ = ["LookupEngine", "Mix", "ProbeSpace"]
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
 
-# Extents of a zone. A point farther from its middle is looked up at this distance, in the same
-# direction: beyond, the digits of float64 do not tell one facet from the next.
-FAR = 1e8
+LookupEngine = Literal["auto", "numpy", "numba"]
 
-
-@dataclass(frozen=True, eq=False)
-class Mix:
-    """What each of q points takes from which probes.
-
-    Attributes
-    ----------
-    probes : (q, 4) int32 numbers of probes; not used, with weight 0, the same as another.
-    weights : (q, 4) float64, ≥ 0, sum 1; NaN for a point with a coordinate that is not finite.
-    cells : (q,) int32 the tetrahedron; −1 − f: the facet f of the hull. A start for the next time.
-    """
-
-    probes: Int
-    weights: Float
-    cells: Int
+# Points from which on it pays to start Numba, which takes half a second.
+MANY = 1 << 15
 
 
 class ProbeSpace:
@@ -150,7 +138,14 @@ class ProbeSpace:
 
         return rings(self.facets, self.facet_zones, len(self.positions))
 
-    def locate(self, points: Float, start: Int | None = None, /) -> Mix:
+    @cached_property
+    def _packed(self) -> Any:
+        """`lookup_numba.Compiled`."""
+        return _numba().compiled(self)
+
+    def locate(
+        self, points: Float, start: Int | None = None, /, *, engine: LookupEngine = "auto"
+    ) -> Mix:
         """The probes around points (q, 3) in metres, world, and their weights.
 
         Inside the hull of a point's zone, the barycentric coordinates in a tetrahedron; outside,
@@ -161,10 +156,35 @@ class ProbeSpace:
         ----------
         start : (q,) `Mix.cells` of last time, where points have moved little; of another zone, or
             no cells at all, they are not used.
+        engine : numpy, numba, or auto: Numba if it is installed and there are many points. Both
+            give the same light within rounding; on a face, they may name either cell.
         """
-        from andon.transport.probes.locate import locate
+        if not _compile(engine, len(points)):
+            return locate(self, points, start)
+        at = np.ascontiguousarray(points, np.float64).reshape(-1, 3)
+        first = np.zeros(0, np.int32) if start is None else np.ascontiguousarray(start, np.int32)
+        mix = Mix(
+            np.zeros((len(at), 4), np.int32), np.zeros((len(at), 4)), np.zeros(len(at), np.int32)
+        )
+        _numba().locate_all(self._packed, at, first, mix.probes, mix.weights, mix.cells)
+        return mix
 
-        return locate(self, points, start)
+    def lookup(
+        self, points: Float, values: NDArray[np.floating], /, *, engine: LookupEngine = "auto"
+    ) -> NDArray[np.floating]:
+        """(q, …) the mix of `values` (n, …) at points (q, 3): `locate` and `mixed` in one.
+
+        Faster than both with Numba, above all where points follow each other closely; computed and
+        returned as float32 if `values` are, else as float64.
+        """
+        kind = np.float32 if values.dtype == np.float32 else np.float64
+        if not _compile(engine, len(points)):
+            return self.mixed(locate(self, points, None), values).astype(kind)
+        at = np.ascontiguousarray(points, np.float64).reshape(-1, 3)
+        flat = np.ascontiguousarray(values, kind).reshape(len(values), -1)
+        result = np.empty((len(at), flat.shape[1]), kind)
+        _numba().lookup_all(self._packed, at, flat, result)
+        return result.reshape(len(at), *values.shape[1:])
 
     def mixed(self, mix: Mix, values: NDArray[np.floating], /) -> NDArray[np.floating]:
         """(q, …) the mix of `values` (n, …), one of each probe: any unit, any linear quantity."""
@@ -173,6 +193,26 @@ class ProbeSpace:
         for corner in range(1, 4):
             result = result + weights[:, corner] * values[mix.probes[:, corner]]
         return result
+
+
+def _numba() -> Any:
+    return importlib.import_module("andon.transport.probes.lookup_numba")
+
+
+def _compile(engine: LookupEngine, count: int) -> bool:
+    """Whether Numba takes `count` points.
+
+    Raises
+    ------
+    MachineError : it is asked for, and not installed.
+    """
+    if engine == "numpy" or (engine == "auto" and count < MANY):
+        return False
+    if importlib.util.find_spec("numba") is not None:
+        return True
+    if engine == "numba":
+        raise MachineError("Numba is not installed", remedy="pip install andon[probes]")
+    return False
 
 
 def _check(cells: Cells, probes: int, zones: int) -> None:

@@ -10,6 +10,7 @@ module          idea
 `buffers`       bytes → arrays: views, strides, sparse, normalised, data URIs
 `materials`     metallic-roughness → `Material`, textures, emission in cd/m²
 `nodes`         the tree of transforms, and the lights in it
+`locators`      named nodes as places, read and written
 `primitives`    triangles, strips and fans, morph targets, as they are stored
 `skins`         joints, and which vertices hang on them
 `posing`        vertices in the world: placed, mirrored, skinned, morphed
@@ -41,11 +42,19 @@ from andon.files.meshes.gltf.bound import BoundMesh, bind
 from andon.files.meshes.gltf.buffers import BufferStore
 from andon.files.meshes.gltf.clips import read_clips
 from andon.files.meshes.gltf.container import Document, open_document
+from andon.files.meshes.gltf.locators import GltfNode, read_gltf_nodes, write_gltf_nodes
 from andon.files.meshes.gltf.motion import NodeTree
 from andon.files.meshes.gltf.nodes import PlacedNode, place_nodes, read_light
 from andon.files.meshes.model import MeshFile, MeshLight
 
-__all__ = ["read_gltf", "read_gltf_animated", "read_gltf_lights"]
+__all__ = [
+    "GltfNode",
+    "read_gltf",
+    "read_gltf_animated",
+    "read_gltf_lights",
+    "read_gltf_nodes",
+    "write_gltf_nodes",
+]
 
 
 def read_gltf(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> MeshFile:

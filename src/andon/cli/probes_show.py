@@ -1,0 +1,229 @@
+"""``andon probes show``: a picture of a probe volume."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from andon.cli.console import check_writable, note, printable
+from andon.errors import InputError, nearest_name
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from andon.display.probe_pictures import Look, Part
+    from andon.files.volumes import ProbeVolume
+    from andon.quantities import Geometry
+    from andon.scene import Scene
+    from andon.spaces import View
+
+    Float = NDArray[np.float64]
+
+__all__ = ["show"]
+
+MOST_PX = 8192
+_SIZE = re.compile(r"(\d{1,5})[x×](\d{1,5})")
+
+
+@dataclass(frozen=True, eq=False)
+class _Subject:
+    """What is shown: the volume, and of a scene also what stands around and the state it sees."""
+
+    volume: ProbeVolume
+    geometry: Geometry | None = None
+    state: str | None = None
+
+
+def show(
+    file: Annotated[Path, typer.Argument(help="Probe volume (.glb), or a scene (.toml).")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Picture, PNG.")] = Path("probes.png"),
+    size: Annotated[str, typer.Option(help="Of the picture, pixels.")] = "1280x720",
+    eye: Annotated[
+        str | None, typer.Option("--from", metavar="X,Y,Z", help="Where from, metres.")
+    ] = None,
+    target: Annotated[
+        str | None, typer.Option("--at", metavar="X,Y,Z", help="Where to, metres.")
+    ] = None,
+    what: Annotated[
+        str, typer.Option(help="Of balls, cells, hull, graph and zones, with commas.")
+    ] = "balls,cells,hull,zones",
+    irradiance: Annotated[
+        bool, typer.Option("--irradiance", help="Balls show irradiance/π, not luminance.")
+    ] = False,
+    state: Annotated[str | None, typer.Option(help="Of the volume; default: its first.")] = None,
+    exposure: Annotated[
+        float | None, typer.Option(help="Screen value per cd/m²; default: chosen and printed.")
+    ] = None,
+) -> None:
+    """Draw a probe volume: balls with the probes' light, cells, hull, zones.
+
+    Of a scene, the volume that it names is drawn amid its surfaces; while there is none, the
+    places where its probes will go.
+
+    Examples:
+
+        andon probes show room.probes.glb --what balls,cells
+
+        andon probes show scene.toml -o probes.png
+
+        andon probes show scene.toml -o near.png --from 0,2,4 --at 0,1,0 --irradiance
+    """
+    check_writable(out, (".png",), "--out")
+    shape = _size(size)
+    parts = _parts(what)
+    ends = _point(eye, "--from"), _point(target, "--at")
+    if exposure is not None and not 0 < exposure < float("inf"):
+        raise InputError(f"must be > 0, got {exposure:g}", field="--exposure")
+    subject = _subject(file)
+    _check_state(subject.volume, state, file)
+    view = _view(subject, shape, *ends)
+    from andon.display.probe_pictures import Look
+
+    white = _draw(subject, view, out, Look(parts, irradiance, None, exposure), state, file.name)
+    if white == white:
+        note(f"white is {white:.4g} cd/m², that is --exposure {1 / white:.3g}")
+    print(out)
+
+
+def _size(text: str) -> tuple[int, int]:
+    found = _SIZE.fullmatch(text)
+    if found is None or not all(64 <= int(side) <= MOST_PX for side in found.groups()):
+        raise InputError(
+            f"must be width x height, 64…{MOST_PX} px each, got {text[:40]!r}",
+            field="--size",
+            remedy="for example --size 1280x720",
+        )
+    return int(found[1]), int(found[2])
+
+
+def _parts(text: str) -> tuple[Part, ...]:
+    from andon.display.probe_pictures import PARTS
+
+    words = [word.strip() for word in text.split(",") if word.strip()]
+    for word in words or [text]:
+        if word not in PARTS:
+            near = nearest_name(word, list(PARTS))
+            raise InputError(
+                f"must be of {', '.join(PARTS)}, got {word[:40]!r}",
+                field="--what",
+                remedy=f"did you mean {near!r}?" if near else None,
+            )
+    return tuple(part for part in PARTS if part in words)
+
+
+def _point(text: str | None, field: str) -> Float | None:
+    """(3,) of three numbers with commas, or None."""
+    import numpy as np
+
+    if text is None:
+        return None
+    try:
+        values = np.array([float(word) for word in text.split(",")])
+    except ValueError:
+        values = np.array([np.nan])
+    if values.shape != (3,) or not np.isfinite(values).all():
+        raise InputError(
+            f"must be three numbers with commas, got {text[:40]!r}",
+            field=field,
+            remedy=f"for example {field} 0,1.6,3",
+        )
+    return values
+
+
+def _subject(file: Path) -> _Subject:
+    from andon.files.volumes import read_volume
+
+    if file.suffix.lower() == ".glb":
+        return _Subject(read_volume(file))
+    if file.suffix.lower() != ".toml":
+        raise InputError("must be a probe volume (.glb) or a scene (.toml)", file=file)
+    from andon.cli.probes_place import scene_geometry
+    from andon.scene import load_scene
+
+    scene = load_scene(file)
+    if scene.probes is None:
+        raise InputError("needs a [probes] table", file=file, remedy="add probes.volume")
+    geometry = scene_geometry(scene)
+    path = scene.path(scene.probes.volume, "probes.volume")
+    if path.exists():
+        return _Subject(read_volume(path), geometry, scene.probes.state)
+    note(f"{path.name} is not baked yet: these are the places of its probes")
+    return _Subject(_unlit(scene, geometry), geometry)
+
+
+def _unlit(scene: Scene, geometry: Geometry) -> ProbeVolume:
+    """The volume that a bake of the scene would fill."""
+    from andon.files.volumes import ProbeVolume
+    from andon.transport.probes.cells import build_cells
+    from andon.transport.probes.placement import place_probes, zones_of
+
+    placed = place_probes(scene, geometry)
+    for warning in placed.warnings:
+        note(printable(warning))
+    zones = zones_of(scene, placed.positions)
+    return ProbeVolume(
+        placed.positions,
+        placed.capture_positions,
+        placed.names,
+        placed.roles,
+        placed.ranges_m,
+        {},
+        zones,
+        build_cells(placed.positions, zones),
+        photometry=scene.photometry,
+    )
+
+
+def _check_state(volume: ProbeVolume, state: str | None, file: Path) -> None:
+    if state is not None and state not in volume.states:
+        known = ", ".join(volume.states)
+        raise InputError(
+            f"there is no state {state!r}",
+            file=file,
+            field="--state",
+            remedy=f"it has {known}" if known else "it is not baked yet",
+        )
+
+
+def _view(
+    subject: _Subject, size: tuple[int, int], eye: Float | None, target: Float | None
+) -> View:
+    import numpy as np
+
+    from andon.display.probe_pictures import around_view
+
+    points = subject.volume.positions
+    if subject.geometry is not None and len(subject.geometry.triangles):
+        points = np.concatenate([points, subject.geometry.positions])
+    try:
+        return around_view(points, size, eye=eye, target=target)
+    except InputError as error:
+        if error.field != "look_at":
+            raise
+        raise InputError(
+            "must lie apart, and not above each other", field="--from and --at"
+        ) from error
+
+
+def _draw(
+    subject: _Subject, view: View, out: Path, look: Look, state: str | None, caption: str
+) -> float:
+    """Writes the picture; the luminance of its white, NaN without light."""
+    from andon.display.probe_pictures import probe_picture
+    from andon.files.pictures import write_png
+
+    picture = probe_picture(
+        subject.volume,
+        view,
+        look,
+        geometry=subject.geometry,
+        state=state or subject.state,
+        caption=printable(caption),
+    )
+    write_png(out, picture.rgb)
+    return picture.white_cd_m2

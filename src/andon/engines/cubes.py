@@ -1,0 +1,213 @@
+"""Cube maps of what stands still: the light and the distances around places, on both engines.
+
+::
+
+    place ─six views▶ surface ─▶ direct ─▶ captured        (6, s, s, 3) cd/m², (6, s, s) m
+
+Bodies of lamps are not seen (they light things directly), but they cast their shadows. Sky and
+hemisphere lamps light no surface here: a surface is lit by as much of the sky as the probes of an
+earlier bounce saw, so that rooms have no sky in them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.engines.moment import Moment
+from andon.engines.prepared import Prepared
+from andon.errors import InputError, MachineError
+from andon.lamps import HemisphereLamp, Lamp, SkyLamp
+from andon.quantities import CameraFrame, Geometry
+from andon.spaces import View
+from andon.surface import reference as surface
+from andon.surface.model import SurfaceModel
+from andon.transport.probes.capture import Lighting, Seen
+from andon.transport.probes.photograph import Photograph, Picture
+
+if TYPE_CHECKING:
+    from andon.scene import Scene
+
+__all__ = [
+    "CubeEngine",
+    "CubeSetting",
+    "cube_engine",
+    "cube_setting",
+    "cube_views",
+    "mirrored",
+]
+
+Float = NDArray[np.float64]
+
+# Right, down and forward of each face's camera: the faces' axes with u turned round, since a cube
+# map is mirrored as seen from inside and a camera is not.
+_AXES = np.array(
+    [
+        [(0, 0, 1), (0, -1, 0), (1, 0, 0)],
+        [(0, 0, -1), (0, -1, 0), (-1, 0, 0)],
+        [(-1, 0, 0), (0, 0, 1), (0, 1, 0)],
+        [(-1, 0, 0), (0, 0, -1), (0, -1, 0)],
+        [(-1, 0, 0), (0, -1, 0), (0, 0, 1)],
+        [(1, 0, 0), (0, -1, 0), (0, 0, -1)],
+    ],
+    float,
+)
+
+
+def cube_views(position: NDArray[Any], size: int, /) -> tuple[View, ...]:
+    """The six cameras around `position` (3,) whose pictures, `mirrored`, are a cube map's faces.
+
+    Each is a pinhole of 90° with `size` × `size` pixels; column c looks where column size − 1 − c
+    of `cube_directions` does.
+    """
+    views: list[View] = []
+    for axes in _AXES:
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = axes.T, position
+        middle = (size - 1) / 2
+        views.append(
+            View("pinhole", size, size, size / 2, size / 2, middle, middle, (), pose, "probe")
+        )
+    return tuple(views)
+
+
+def mirrored(pictures: NDArray[Any], /) -> NDArray[Any]:
+    """Pictures (6, s, s, …) of `cube_views` as the faces of a cube map, and back."""
+    return pictures[:, :, ::-1]
+
+
+@dataclass(frozen=True, eq=False)
+class CubeSetting:
+    """What captures are made of.
+
+    Attributes
+    ----------
+    surface : what is seen.
+    casters : a moment's bodies, which cast shadows beside what is seen.
+    lamps : those that light surfaces.
+    lighting : all other light.
+    prepared : where it is from.
+    emits : something gives light of itself: a material, or the sky.
+    """
+
+    surface: SurfaceModel
+    moment: Moment
+    lamps: tuple[Lamp, ...]
+    lighting: Lighting
+    prepared: Prepared
+    emits: bool
+
+    @property
+    def geometry(self) -> tuple[Geometry, ...]:
+        """All that is seen: the real surface and the virtual one."""
+        parts = (self.surface.real, self.surface.objects)
+        return tuple(part for part in parts if len(part.triangles))
+
+
+class CubeEngine(Protocol):
+    """Looks around from places."""
+
+    name: str
+    adapter: str
+
+    def look(self, position: Float, /, *, lit: bool = True) -> tuple[Seen, Float | None]:
+        """What is met around `position` (3,), and the lux (6, s, s, 3) of lamps on it.
+
+        Without `lit` there are no lamps, and no lux.
+        """
+        ...
+
+
+def cube_setting(scene: Scene, prepared: Prepared, /) -> CubeSetting:
+    """What captures of a scene see: what stands still, at the start of the session.
+
+    Raises `InputError` where there is nothing to see.
+    """
+    model = prepared.surface
+    if model.is_distant_only:
+        raise InputError(
+            "has no positions, and light is captured at places",
+            file=scene.file,
+            field="surface.normals",
+            remedy="give a depth or a mesh",
+        )
+    moment = prepared.at(0.0)
+    left_out = {table.name for table in scene.lamp if not table.in_probes}
+    lamps = [lamp for lamp in moment.lamps if (lamp.owner or lamp.name) not in left_out]
+    sky = tuple(lamp for lamp in lamps if isinstance(lamp, SkyLamp | HemisphereLamp))
+    real = model.real
+    photograph = None
+    if prepared.frames and len(real.triangles) and not _states_reflectance(real):
+        photograph = _photograph(prepared)
+    ambient = prepared.ambient
+    lux = np.asarray(ambient.dimming) * ambient.mean_lux
+    # A material whose light the photograph shows emits nothing beside it.
+    seen = model if photograph is None else replace(model, real=_without_materials(real))
+    materials = [m for part in (seen.real, seen.objects) for m in part.materials]
+    emits = bool(sky) or any(any(material.emissive_cd_m2) for material in materials)
+    return CubeSetting(
+        seen,
+        moment,
+        tuple(lamp for lamp in lamps if not isinstance(lamp, SkyLamp | HemisphereLamp)),
+        Lighting(lux, photograph, sky),
+        prepared,
+        emits,
+    )
+
+
+def cube_engine(setting: CubeSetting, size: int, /, engine: str = "auto") -> CubeEngine:
+    """What looks around, with faces of `size` pixels; ``auto``: the GPU where there is one.
+
+    Raises `MachineError` for ``gpu`` without an adapter.
+    """
+    from andon.engines.cubes_reference import ReferenceCubes
+
+    if engine not in ("auto", "gpu", "reference"):
+        raise InputError(f"must be auto, gpu or reference, got {engine!r}", field="engine")
+    if engine == "reference":
+        return ReferenceCubes(setting, size)
+    from andon.engines.cubes_gpu import GpuCubes
+
+    try:
+        return GpuCubes(setting, size)
+    except MachineError:
+        if engine == "gpu":
+            raise
+        return ReferenceCubes(setting, size)
+
+
+def _states_reflectance(real: Geometry) -> bool:
+    """The mesh has materials of its own; readers give a nameless one where a file has none."""
+    return any(material.name for material in real.materials)
+
+
+def _without_materials(real: Geometry) -> Geometry:
+    return Geometry(real.positions, real.triangles, real.normals)
+
+
+def _photograph(prepared: Prepared) -> Photograph:
+    pictures: list[Picture] = []
+    for frame in prepared.frames.values():
+        alone = replace(prepared.surface, objects=Geometry(np.zeros((0, 3)), _NONE))
+        depth = surface.see(alone, frame.view).depth
+        pictures.append(Picture(frame.view, depth, _light(frame, prepared)))
+    return Photograph(pictures)
+
+
+_NONE = np.zeros((0, 3), np.int32)
+
+
+def _light(frame: CameraFrame, prepared: Prepared) -> NDArray[np.float32]:
+    """(H, W, 6) luminance left of the photograph's own light, and reflectance."""
+    ambient, linear = prepared.ambient, np.asarray(frame.linear, np.float64)
+    dimming = np.asarray(ambient.dimming)
+    if ambient.dimming_mode == "linear":
+        dimmed = dimming * linear
+    else:
+        dimmed = frame.response.decode(dimming * frame.response.encode(linear))
+    reflectance = np.pi * frame.luminance_per_unit * linear / ambient.illuminance_lux
+    light = np.concatenate([frame.luminance_per_unit * dimmed, reflectance], axis=-1)
+    return np.maximum(light, 0).astype(np.float32)

@@ -1,0 +1,297 @@
+"""The lookup of `locate`, one point after the other, compiled: for millions of points.
+
+Each thread takes a run of points. A point is tried in the cell of the last one; else the walk
+begins there while they stay near, or where the grid says. Numba is imported with this module and by
+nobody else; `lookup_hull` has what happens outside.
+"""
+
+# Numba knows its arguments, and needs none of the annotations that a checker would ask for.
+# pyright: basic
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+from andon.transport.probes.locate import FAR, SEARCH_INSIDE
+from andon.transport.probes.lookup import INSIDE, step_limit
+from andon.transport.probes.lookup_hull import OPTIONS, search_hull, walk_hull
+from andon.transport.probes.space import ProbeSpace
+
+__all__ = ["Compiled", "compiled", "locate_all", "lookup_all"]
+
+# Points of a run: enough to be near each other, few enough to go round.
+RUN = 1024
+# Share of the extent by which a point is surely in front of a hull's facet.
+CLEARLY = 1e-6
+
+
+class Compiled(NamedTuple):
+    """Arrays of a `ProbeSpace`, packed: what is read together lies together.
+
+    Few of them, since each travels through every call. Rows are
+    `cells` (m, 12): inverse, origin; `links` (m, 8): neighbours, corners;
+    `facets` (f, 18): three corners, normal, gradients; `edges` (f, 7): probes, neighbours, cell;
+    `zones` (z, 10): middle, extent, origin and step of the grid;
+    `ranges` (z, 9): first and count of cells, of facets, shape and first of the grid, step limit.
+    """
+
+    cells: NDArray[np.float64]
+    links: NDArray[np.int32]
+    facets: NDArray[np.float64]
+    edges: NDArray[np.int32]
+    zones: NDArray[np.float64]
+    ranges: NDArray[np.int32]
+    boxes: NDArray[np.float64]
+    box_zones: NDArray[np.int32]
+    starts: NDArray[np.int32]
+
+
+def compiled(space: ProbeSpace, /) -> Compiled:
+    """The arrays of `space`, packed."""
+    limits = [step_limit(int(count)) for count in space.zone_cells[:, 1]]
+    corners = space.positions[space.facets].reshape(-1, 9)
+    gradients = space.facet_gradients.reshape(-1, 6)
+    return Compiled(
+        np.column_stack([space.inverses.reshape(-1, 9), space.origins]),
+        np.column_stack([space.neighbours, space.corners]),
+        np.column_stack([corners, space.facet_normals, gradients]),
+        np.column_stack([space.facets, space.facet_neighbours, space.facet_cells]),
+        np.column_stack(
+            [space.zone_middles, space.zone_extents, space.grid_origins, space.grid_steps]
+        ),
+        np.column_stack(
+            [space.zone_cells, space.zone_facets, space.grid_shapes, space.grid_firsts, limits]
+        ).astype(np.int32),
+        np.ascontiguousarray(space.boxes),
+        np.ascontiguousarray(space.box_zones),
+        np.ascontiguousarray(space.grid_starts),
+    )
+
+
+@njit(**OPTIONS)
+def _zone_of(boxes, box_zones, x, y, z):
+    if len(boxes) == 1:
+        return box_zones[0]
+    best, least = 0, np.inf
+    for b in range(len(boxes)):
+        dx = max(boxes[b, 0, 0] - x, x - boxes[b, 1, 0], 0.0)
+        dy = max(boxes[b, 0, 1] - y, y - boxes[b, 1, 1], 0.0)
+        dz = max(boxes[b, 0, 2] - z, z - boxes[b, 1, 2], 0.0)
+        square = dx * dx + dy * dy + dz * dz
+        if square < least:
+            best, least = b, square
+    return box_zones[best]
+
+
+@njit(**OPTIONS)
+def _drawn_near(zone, x, y, z):
+    """As `locate._drawn_near`; `zone`: a row of `zones`."""
+    reach = FAR * zone[3]
+    dx = min(max(x - zone[0], -1e300), 1e300)
+    dy = min(max(y - zone[1], -1e300), 1e300)
+    dz = min(max(z - zone[2], -1e300), 1e300)
+    largest = max(abs(dx), abs(dy), abs(dz))
+    if largest <= reach / 2:
+        return x, y, z
+    length = np.sqrt((dx / largest) ** 2 + (dy / largest) ** 2 + (dz / largest) ** 2)
+    share = reach / largest / length
+    if share >= 1:
+        return x, y, z
+    return zone[0] + share * dx, zone[1] + share * dy, zone[2] + share * dz
+
+
+@njit(**OPTIONS)
+def _box(at, origin, step, count):
+    return int(min(max(np.floor((at - origin) / step), 0.0), count - 1.0))
+
+
+@njit(**OPTIONS)
+def _grid_start(zone, range_, starts, x, y, z):
+    i = _box(x, zone[4], zone[7], range_[4])
+    j = _box(y, zone[5], zone[8], range_[5])
+    k = _box(z, zone[6], zone[9], range_[6])
+    return starts[range_[7] + i + range_[4] * (j + range_[5] * k)]
+
+
+@njit(**OPTIONS)
+def _weights(m, x, y, z):
+    """Coordinates in the tetrahedron whose row of `cells` is `m`."""
+    x, y, z = x - m[9], y - m[10], z - m[11]
+    a = m[0] * x + m[1] * y + m[2] * z
+    b = m[3] * x + m[4] * y + m[5] * z
+    c = m[6] * x + m[7] * y + m[8] * z
+    return a, b, c, 1 - (a + b + c)
+
+
+@njit(**OPTIONS)
+def _walk(cells, links, limit, cell, x, y, z):
+    """Where a walk ends: a tetrahedron, or −1 − the facet through which it has left; and whether it
+    did."""
+    before = -1
+    for _ in range(limit):
+        w = _weights(cells[cell], x, y, z)
+        inner, face = INSIDE, -1
+        outer, exit_face = INSIDE, -1
+        for k in range(4):
+            beyond = links[cell, k]
+            if beyond < 0:
+                if w[k] < outer:
+                    outer, exit_face = w[k], k
+            elif w[k] < inner and beyond != before:
+                inner, face = w[k], k
+        if face < 0:
+            return (cell if exit_face < 0 else links[cell, exit_face]), True
+        before, cell = cell, links[cell, face]
+    return cell, False
+
+
+@njit(**OPTIONS)
+def _search(cells, range_, x, y, z):
+    """The tetrahedron of a zone that holds a point best, and its smallest weight there."""
+    found, best = -1, -np.inf
+    for cell in range(range_[0], range_[0] + range_[1]):
+        w = _weights(cells[cell], x, y, z)
+        least = min(min(w[0], w[1]), min(w[2], w[3]))
+        if least > best:
+            found, best = cell, least
+    return found, best
+
+
+@njit(**OPTIONS)
+def _found(s, zone, begin, x, y, z):
+    """The tetrahedron of a point; −1 − f: it is outside, near the facet f."""
+    cell = begin
+    if begin < 0:
+        cell = s.edges[-1 - begin, 6]
+        if cell < 0:
+            return begin
+        f = s.facets[-1 - begin]
+        height = f[9] * (x - f[0]) + f[10] * (y - f[1]) + f[11] * (z - f[2])
+        if height > CLEARLY * s.zones[zone, 3]:
+            return begin
+    end, ended = _walk(s.cells, s.links, s.ranges[zone, 8], cell, x, y, z)
+    if ended:
+        return end
+    cell, least = _search(s.cells, s.ranges[zone], x, y, z)
+    if least >= SEARCH_INSIDE:
+        return cell
+    return -1 - search_hull(s.facets, s.ranges[zone, 2], s.ranges[zone, 3], x, y, z)
+
+
+@njit(**OPTIONS)
+def _place(s, zone, begin, x, y, z):
+    """(cell, or −1 − facet, and four weights) of a finite point."""
+    found = _found(s, zone, begin, x, y, z)
+    if found >= 0:
+        return found, _held(_weights(s.cells[found], x, y, z))
+    facet, w = walk_hull(s.facets, s.edges, s.zones[zone, 3], -1 - found, x, y, z)
+    return -1 - facet, (w[0], w[1], w[2], 0.0)
+
+
+@njit(**OPTIONS)
+def _held(w):
+    """Without what rounding put below 0; sum 1."""
+    a, b, c, d = max(w[0], 0.0), max(w[1], 0.0), max(w[2], 0.0), max(w[3], 0.0)
+    total = a + b + c + d
+    return a / total, b / total, c / total, d / total
+
+
+@njit(**OPTIONS)
+def _next(s, zone, last, near, x, y, z):
+    """As `_place`, of a point in a zone; `last`: where to begin, if `near`."""
+    x, y, z = _drawn_near(s.zones[zone], x, y, z)
+    if not near:
+        last = _grid_start(s.zones[zone], s.ranges[zone], s.starts, x, y, z)
+    return _place(s, zone, last, x, y, z)
+
+
+@njit(**OPTIONS)
+def _is_near(zone, x, y, z, u, v, w):
+    """Whether two points are no more than a box of the grid apart."""
+    return abs(x - u) <= zone[7] and abs(y - v) <= zone[8] and abs(z - w) <= zone[9]
+
+
+@njit(**OPTIONS)
+def _of_zone(range_, cell):
+    """Whether a cell, or −1 − facet, is one of the zone's."""
+    if cell >= 0:
+        return range_[0] <= cell < range_[0] + range_[1]
+    return range_[2] <= -1 - cell < range_[2] + range_[3]
+
+
+@njit(**OPTIONS)
+def _locate_run(s, points, start, probes, weights, cells):
+    last, last_zone, u, v, w = 0, -1, 0.0, 0.0, 0.0
+    for i in range(len(points)):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        if not np.isfinite(x + y + z) and not (
+            np.isfinite(x) and np.isfinite(y) and np.isfinite(z)
+        ):
+            weights[i], probes[i], cells[i] = np.nan, 0, s.starts[0]
+            continue
+        zone = _zone_of(s.boxes, s.box_zones, x, y, z)
+        if len(start) > 0:
+            last, near = start[i], _of_zone(s.ranges[zone], start[i])
+        else:
+            near = zone == last_zone and _is_near(s.zones[zone], x, y, z, u, v, w)
+        last, share = _next(s, zone, last, near, x, y, z)
+        last_zone, u, v, w = zone, x, y, z
+        cells[i] = last
+        for k in range(4):
+            weights[i, k] = share[k]
+            probes[i, k] = s.links[last, 4 + k] if last >= 0 else s.edges[-1 - last, k % 3]
+
+
+@njit(**OPTIONS)
+def _lookup_run(s, points, values, result):
+    cells, links = s.cells, s.links
+    last, last_zone, u, v, w = -1, -1, 0.0, 0.0, 0.0
+    for i in range(len(points)):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        zone = _zone_of(s.boxes, s.box_zones, x, y, z)
+        if last >= 0 and zone == last_zone:
+            share = _weights(cells[last], x, y, z)
+            if min(min(share[0], share[1]), min(share[2], share[3])) >= 0:
+                p = links[last]
+                _mix(values, p[4], p[5], p[6], p[7], share, result[i])
+                continue
+        if not (np.isfinite(x) and np.isfinite(y) and np.isfinite(z)):
+            result[i] = np.nan
+            continue
+        near = zone == last_zone and _is_near(s.zones[zone], x, y, z, u, v, w)
+        last, share = _next(s, zone, last, near, x, y, z)
+        last_zone, u, v, w = zone, x, y, z
+        if last >= 0:
+            p = links[last]
+            _mix(values, p[4], p[5], p[6], p[7], share, result[i])
+        else:
+            p = s.edges[-1 - last]
+            _mix(values, p[0], p[1], p[2], p[0], share, result[i])
+
+
+@njit(**OPTIONS)
+def _mix(values, p, q, r, s, share, result):
+    kind = values.dtype.type
+    a, b, c, d = kind(share[0]), kind(share[1]), kind(share[2]), kind(share[3])
+    first, second, third, fourth = values[p], values[q], values[r], values[s]
+    for k in range(len(result)):
+        result[k] = a * first[k] + b * second[k] + c * third[k] + d * fourth[k]
+
+
+@njit(parallel=True, **OPTIONS)
+def locate_all(s, points, start, probes, weights, cells):
+    """Fills probes, weights (q, 4) and cells (q,) of points (q, 3); `start` (q,) or (0,)."""
+    for run in prange((len(points) + RUN - 1) // RUN):
+        i, j = run * RUN, (run + 1) * RUN
+        _locate_run(s, points[i:j], start[i:j], probes[i:j], weights[i:j], cells[i:j])
+
+
+@njit(parallel=True, **OPTIONS)
+def lookup_all(s, points, values, result):
+    """Fills `result` (q, c) with the mix of `values` (n, c), of the same type."""
+    for run in prange((len(points) + RUN - 1) // RUN):
+        i, j = run * RUN, (run + 1) * RUN
+        _lookup_run(s, points[i:j], values, result[i:j])

@@ -1,0 +1,1 @@
+"""The mannequin of examples/basic: its bones, its skin, its walk."""

@@ -183,7 +183,7 @@ def test_without_walls_in_the_way_nothing_changes():
 
 
 def test_the_light_is_continuous():
-    """Along lines through many cells, past probes that go out of sight, steps shrink with theirs."""
+    """Along lines through many cells, past probes that go out of sight, steps shrink."""
     light = light_of(random_volume(POSITIONS["random"], seed=3))
     for seed in range(4):
         start, end = np.random.default_rng(seed).uniform(-0.5, 4.5, (2, 3))

@@ -87,6 +87,8 @@ class _View:
         found: list[tuple[int, int, int, int]] = []
         for info, end in zip(model.objects_table, ends.tolist(), strict=True):
             if info.lit_by_probes:
+                if end > len(model.objects.triangles):  # it moves: it may be anywhere
+                    return [(0, 0, view.width, view.height)]
                 part = model.objects.triangles[end - info.triangles : end]
                 rectangle = body_rectangle(view, model.objects.positions[part].reshape(-1, 3))
                 found += [] if rectangle is None else [rectangle]

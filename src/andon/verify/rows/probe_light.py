@@ -129,6 +129,7 @@ def leaks(method: Method) -> tuple[float, float]:
 def leaks_in(
     method: Method, thickness: float, number: int, towards_wall: bool
 ) -> tuple[float, float]:
+    """`leaks` in one scene: the wall's thickness in metres, which lattice, which normals."""
     room, space, walls, coefficients, truth = _scene(thickness, number)
     lit, dark = points_in(thickness, POINTS)
     normals = _normals(towards_wall, number)

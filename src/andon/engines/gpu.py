@@ -120,7 +120,7 @@ class GpuEngine:
         self.probes: ProbeBuffers | None = None
         if probes is not None and (self.taking & PROBES).any():
             slots = prepared.surface.object_of_slot
-            self.probes = ProbeBuffers(self.gpu, probes.light, probes.lookup, slots)
+            self.probes = ProbeBuffers(self.gpu, probes.dimmed, probes.lookup, slots)
         self.direct = direct.DirectStage(
             self.gpu,
             prepared.casters(self.start),

@@ -46,6 +46,7 @@ def ambient_without_photograph(scene: Scene, /) -> Ambient:
         return Ambient(np.ones(3), (0.0, 0.0, 0.0))
     for key, remedy in (
         ("map", "state ambient.illuminance_lux"),
+        ("probes", "leave it out: without a photograph probes light everything that is drawn"),
         ("source", "make them [[lamp]]: without a photograph they light the scene themselves"),
     ):
         if getattr(table, key):

@@ -60,6 +60,7 @@ def ambient_without_photograph(scene: Scene, /) -> Ambient:
         return Ambient(np.full(3, NO_LUX))
     for key, remedy in (
         ("map", "state ambient.illuminance_lux"),
+        ("probes", "leave it out: without a photograph probes light everything that is drawn"),
         ("source", "make them [[lamp]]: without a photograph they light the scene themselves"),
     ):
         if getattr(table, key):

@@ -28,6 +28,7 @@ from andon.engines.reading import (
     source_of,
     view_of,
 )
+from andon.errors import InputError
 from andon.glow.model import Glow
 from andon.lamps import Body, Lamp, resolve_bodies, resolve_lamps
 from andon.lamps.sources import resolve_sources
@@ -166,6 +167,13 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
     surface = load_surface(scene, views)
     notes: tuple[str, ...] = ()
     if scene.ambient is not None and scene.ambient.probes:
+        if not drawn:
+            raise InputError(
+                "is light that a bake does not have yet",
+                file=scene.file,
+                field="ambient.probes",
+                remedy="state ambient.illuminance_lux for the bake",
+            )
         ambient, notes = ambient_of_probes(scene, probes, surface, views)
     else:
         ambient = ambient_of(scene, views)

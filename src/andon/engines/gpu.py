@@ -211,6 +211,10 @@ class GpuEngine:
             surface.emitted_cd_m2[own] = alone[own]
         return surface, Illuminance(lux, word), self._cd_m2(luminance, light.frame), image.read()
 
+    def picture(self, image: DisplayStage) -> DisplayImage:
+        """What `encode` gave, as an array."""
+        return image.read()
+
     def read_bodies(
         self, frame: CameraFrame, seen: GpuSurface, moment: Moment
     ) -> tuple[Luminance | None, Luminance | None]:

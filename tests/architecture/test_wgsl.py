@@ -104,12 +104,8 @@ def test_imports_resolve(path):
     assert all(text.count(f"// ── {name}\n") <= 1 for name in MODULES)
 
 
-# For shaders of others, and for passes to come; tests/harmonics compiles and calls it.
-STANDALONE = {"andon/harmonics/harmonics.wgsl"}
-
-
 def test_every_module_is_used():
-    imported = {name for text in TEXTS.values() for name in IMPORT.findall(text)} | STANDALONE
+    imported = {name for text in TEXTS.values() for name in IMPORT.findall(text)}
     exchanged = {name for variant in VARIANTS.values() for name in variant.values()}
     assert set(MODULES) - set(PROGRAMS) <= imported | exchanged
     assert imported <= set(MODULES)

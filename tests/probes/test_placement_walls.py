@@ -23,10 +23,17 @@ def test_inside_a_room_none_do():
 
 
 def test_the_way_out_leads_to_the_nearest_back():
-    sight = Walls(block((2, 8, 8), (0, 0, 0))).sight(np.array([[0.8, 0, 0], [5, 0, 0]]))
-    assert 0.2 <= np.linalg.norm(sight.way_out[0]) < 0.22
-    assert sight.way_out[0, 0] == pytest.approx(0.2, abs=1e-6)
-    assert np.isnan(sight.way_out[1]).all()
+    walls = Walls(block((2, 8, 8), (0, 0, 0)))
+    points = np.array([[0.8, 0, 0], [5, 0, 0]])
+    ways = walls.ways_out(points, np.full(3, -9.0), np.full(3, 9.0), 0.0)
+    assert 0.2 <= np.linalg.norm(ways[0]) < 0.22
+    assert ways[0, 0] == pytest.approx(0.2, abs=1e-6)
+    assert np.isnan(ways[1]).all()
+    # The near side is not in the box: the far one is.
+    ways = walls.ways_out(points, np.full(3, -9.0), np.array([1.0, 9, 9]), 0.5)
+    assert ways[0, 0] < -1.8
+    assert points[0, 0] + ways[0, 0] < -1.4
+    assert np.isnan(walls.ways_out(points, -np.ones(3), np.ones(3), 0.5)).all()
 
 
 def test_no_triangles_are_open_space():

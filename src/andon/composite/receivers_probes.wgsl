@@ -4,7 +4,7 @@
 //!import andon/gbuffer/gbuffer.wgsl
 //!import andon/composite/taking.wgsl
 
-// In lux, drawn where such objects are.
+// In lux, dimmed, drawn where such objects are.
 @group(2) @binding(0) var probe_picture: texture_2d<f32>;
 
 fn received_lux(point: SurfacePoint, lux: vec3f) -> vec3f {
@@ -14,6 +14,6 @@ fn received_lux(point: SurfacePoint, lux: vec3f) -> vec3f {
 }
 
 fn standing_lux(point: SurfacePoint, pixel: vec2f) -> vec3f {
-  let lux = ambient.dimming * textureLoad(probe_picture, vec2i(pixel), 0).xyz;
+  let lux = textureLoad(probe_picture, vec2i(pixel), 0).xyz;
   return select(ambient.object_lux, lux, (taking(point) & PROBES) != 0u);
 }

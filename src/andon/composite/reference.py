@@ -46,12 +46,12 @@ def object_luminance(
 ) -> Float:
     """Luminance (H, W, 3) in cd/m² of diffuse virtual objects: ρ·E/π plus what they emit.
 
-    They stand in the mean of E0, or in `standing_lux` (H, W, 3) where it is not NaN; dimmed.
+    They stand in the mean of E0, dimmed, or in `standing_lux` (H, W, 3) where it is not NaN.
     """
-    standing = ambient.mean_lux
+    standing = np.asarray(ambient.dimming) * ambient.mean_lux
     if standing_lux is not None:
         standing = np.where(np.isnan(standing_lux), standing, standing_lux)
-    received = np.maximum(np.asarray(ambient.dimming) * standing + added_lux, 0)
+    received = np.maximum(standing + added_lux, 0)
     return surface.reflectance * received / np.pi + surface.emitted_cd_m2
 
 

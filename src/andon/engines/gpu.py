@@ -88,6 +88,8 @@ class _View:
         found: list[tuple[int, int, int, int]] = []
         for info, end in zip(model.objects_table, ends.tolist(), strict=True):
             if info.lit_by_probes:
+                if end > len(model.objects.triangles):  # it moves: it may be anywhere
+                    return [(0, 0, view.width, view.height)]
                 part = model.objects.triangles[end - info.triangles : end]
                 rectangle = body_rectangle(view, model.objects.positions[part].reshape(-1, 3))
                 found += [] if rectangle is None else [rectangle]
@@ -119,7 +121,7 @@ class GpuEngine:
         self.probes: ProbeBuffers | None = None
         if probes is not None and (self.taking & PROBES).any():
             slots = prepared.surface.object_of_slot
-            self.probes = ProbeBuffers(self.gpu, probes.light, probes.lookup, slots)
+            self.probes = ProbeBuffers(self.gpu, probes.dimmed, probes.lookup, slots)
         self.direct = direct.DirectStage(
             self.gpu,
             prepared.casters(self.start),
@@ -208,6 +210,10 @@ class GpuEngine:
             own = surface.body_id >= 0
             surface.emitted_cd_m2[own] = alone[own]
         return surface, Illuminance(lux, word), self._cd_m2(luminance, light.frame), image.read()
+
+    def picture(self, image: DisplayStage) -> DisplayImage:
+        """What `encode` gave, as an array."""
+        return image.read()
 
     def read_bodies(
         self, frame: CameraFrame, seen: GpuSurface, moment: Moment

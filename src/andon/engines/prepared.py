@@ -14,7 +14,7 @@ from andon.engines.checks import check_lamps
 from andon.engines.moment import Moment
 from andon.engines.photographless import (
     ambient_without_photograph,
-    black_frames,
+    sky_frames,
     white_cd_m2,
 )
 from andon.engines.probes import SceneProbes, ambient_of_probes, probes_of
@@ -28,6 +28,7 @@ from andon.engines.reading import (
     source_of,
     view_of,
 )
+from andon.errors import InputError
 from andon.glow.model import Glow
 from andon.lamps import Body, Lamp, resolve_bodies, resolve_lamps
 from andon.lamps.sources import resolve_sources
@@ -155,7 +156,7 @@ def _all_virtual(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen
     """Frames, light and surface of a scene without a photograph."""
     ambient = ambient_without_photograph(scene)
     lamps = resolve_lamps(scene, 0.0)
-    frames = black_frames(scene, white_cd_m2(scene, ambient, lamps)) if drawn else {}
+    frames = sky_frames(scene, lamps, white_cd_m2(scene, ambient, lamps)) if drawn else {}
     return frames, ambient, virtual_surface(scene)
 
 
@@ -166,6 +167,13 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
     surface = load_surface(scene, views)
     notes: tuple[str, ...] = ()
     if scene.ambient is not None and scene.ambient.probes:
+        if not drawn:
+            raise InputError(
+                "is light that a bake does not have yet",
+                file=scene.file,
+                field="ambient.probes",
+                remedy="state ambient.illuminance_lux for the bake",
+            )
         ambient, notes = ambient_of_probes(scene, probes, surface, views)
     else:
         ambient = ambient_of(scene, views)

@@ -56,24 +56,34 @@ class SceneProbes:
     light : the volume's, in the state that is seen.
     lookup : where light is looked up: at each pixel, or once for each object.
     captured : names of sky and hemisphere lamps whose light is in the probes.
+    dimming : (3,) share of their light that is left; that of E0, where there is one.
     """
 
     light: ProbeLight
     lookup: Literal["pixel", "object"] = "pixel"
     captured: frozenset[str] = frozenset()
+    dimming: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+    @property
+    def dimmed(self) -> ProbeLight:
+        """The light that is left."""
+        return replace(self.light, coefficients=self.light.coefficients * np.array(self.dimming))
 
     def standing_lux(self, seen: Surface, model: SurfaceModel, middles: Float) -> Float | None:
-        """(H, W, 3) lux that objects lit by probes stand in; NaN elsewhere. None: no such pixel."""
+        """(H, W, 3) lux that objects lit by probes stand in, dimmed; NaN elsewhere.
+
+        `middles` (objects, 3) are theirs, metres. None: there is no such pixel.
+        """
         lit = lit_pixels(seen, model)
         if not lit.any():
             return None
-        lux = np.full((*seen.view.shape, 3), np.nan)
+        lux, light = np.full((*seen.view.shape, 3), np.nan), self.dimmed
         normals = seen.normal[lit]
         if self.lookup == "pixel":
-            lux[lit] = probe_illuminance(self.light, seen.position[lit], normals)
+            lux[lit] = probe_illuminance(light, seen.position[lit], normals)
         else:
             owners = model.object_of_slot[seen.material_id[lit]]
-            rows = probe_coefficients(self.light, middles)
+            rows = probe_coefficients(light, middles)
             for owner in np.unique(owners):
                 own = owners == owner
                 at = np.flatnonzero(lit.ravel())[own]
@@ -129,7 +139,8 @@ def probes_of(scene: Scene, /) -> tuple[SceneProbes | None, tuple[str, ...]]:
     try:
         light = light_of_volume(volume, table)
     except InputError as error:
-        field = f"probes.{error.field}" if error.field else "probes.volume"
+        field = error.field or "volume"
+        field = field if field.startswith("probes.") else f"probes.{field}"
         raise InputError(error.rule, file=scene.file, field=field, remedy=error.remedy) from error
     notes: tuple[str, ...] = ()
     if table.visibility and light.walls is None:
@@ -137,7 +148,13 @@ def probes_of(scene: Scene, /) -> tuple[SceneProbes | None, tuple[str, ...]]:
     captured = frozenset(
         lamp.name for lamp in scene.lamp if lamp.kind in ("sky", "hemisphere") and lamp.in_probes
     )
-    return SceneProbes(light, table.lookup, captured), notes
+    share = (1.0, 1.0, 1.0) if scene.ambient is None else _triple(scene.ambient.dimming)
+    return SceneProbes(light, table.lookup, captured, share), notes
+
+
+def _triple(values: object) -> tuple[float, float, float]:
+    share: Float = np.broadcast_to(np.asarray(values, float), 3)
+    return float(share[0]), float(share[1]), float(share[2])
 
 
 def light_of_volume(volume: ProbeVolume, table: Probes, /) -> ProbeLight:
@@ -192,5 +209,4 @@ def ambient_of_probes(
             f"E0 of {np.count_nonzero(dark)} pixels is below {LEAST_SHARE:.1%} of the mean by the "
             "probes, and was raised to that",
         )
-    share: Float = np.broadcast_to(np.asarray(table.dimming, float), 3)
-    return Ambient(lux, (share[0], share[1], share[2]), table.dimming_mode), notes
+    return Ambient(lux, _triple(table.dimming), table.dimming_mode), notes

@@ -25,7 +25,15 @@ from andon.rays import RayScene, face_normals
 from andon.spaces import View
 from andon.transport.probes.visibility import distance_map
 
-__all__ = ["LitRoom", "coloured_room", "lattice", "points_in", "two_rooms", "volume_of"]
+__all__ = [
+    "LitRoom",
+    "coloured_room",
+    "lattice",
+    "points_in",
+    "surfaces_of_dark_room",
+    "two_rooms",
+    "volume_of",
+]
 
 Float = NDArray[np.float64]
 Corner = tuple[float, float, float]
@@ -163,6 +171,20 @@ def points_in(thickness_m: float, count: int, seed: int = 5) -> tuple[Float, Flo
     high = np.array([HALF_WIDTH_M, HEIGHT_M, DEPTH_M / 2]) - CLEAR_M
     lit, dark = generator.uniform(low, high, (2, count, 3))
     return lit * [-1, 1, 1], dark
+
+
+def surfaces_of_dark_room(thickness_m: float, count: int, seed: int = 6) -> tuple[Float, Float]:
+    """`count` points (count, 3) on the walls, floor and ceiling of the dark room; and normals."""
+    generator = np.random.default_rng(seed)
+    low = np.array([thickness_m / 2, 0, -DEPTH_M / 2])
+    high = np.array([HALF_WIDTH_M, HEIGHT_M, DEPTH_M / 2])
+    points = generator.uniform(low, high, (count, 3))
+    rows, axis = np.arange(count), generator.integers(0, 3, count)
+    upper = generator.integers(0, 2, count) == 1
+    points[rows, axis] = np.where(upper, high[axis], low[axis])
+    normals = np.zeros((count, 3))
+    normals[rows, axis] = np.where(upper, -1.0, 1.0)
+    return points, normals
 
 
 def lattice(

@@ -1,7 +1,8 @@
 """The walk of `lookup_facets` for one point, compiled by Numba.
 
 Instead of all facets around, it looks across the edge that the closest point is on, or around the
-corner. `facets` and `edges` are those of `lookup_numba.Compiled`.
+corner. `facets` and `edges` are those of `lookup_numba.Compiled`. They are passed on whole and read
+by two subscripts: a row as an array of its own would be counted, with a lock, at each call.
 """
 
 # Numba knows its arguments, and needs none of the annotations that a checker would ask for.
@@ -21,11 +22,12 @@ OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True}
 
 
 @njit(**OPTIONS)
-def _closest(f, x, y, z):
-    """As `lookup_facets.closest_weights`; `f`: a row of `facets`."""
-    bx, by, bz = f[3] - f[0], f[4] - f[1], f[5] - f[2]
-    cx, cy, cz = f[6] - f[0], f[7] - f[1], f[8] - f[2]
-    x, y, z = x - f[0], y - f[1], z - f[2]
+def _closest(facets, f, x, y, z):
+    """As `lookup_facets.closest_weights`, of one facet `f`."""
+    ax, ay, az = facets[f, 0], facets[f, 1], facets[f, 2]
+    bx, by, bz = facets[f, 3] - ax, facets[f, 4] - ay, facets[f, 5] - az
+    cx, cy, cz = facets[f, 6] - ax, facets[f, 7] - ay, facets[f, 8] - az
+    x, y, z = x - ax, y - ay, z - az
     d1, d2 = bx * x + by * y + bz * z, cx * x + cy * y + cz * z
     if d1 <= 0 and d2 <= 0:
         return 1.0, 0.0, 0.0
@@ -33,13 +35,13 @@ def _closest(f, x, y, z):
     d3, d4 = d1 - (bx * bx + by * by + bz * bz), d2 - across
     if d3 >= 0 and d4 <= d3:
         return 0.0, 1.0, 0.0
-    wc = f[15] * x + f[16] * y + f[17] * z
+    wc = facets[f, 15] * x + facets[f, 16] * y + facets[f, 17] * z
     if wc <= 0 and d1 >= 0 and d3 <= 0:
         return 1 - d1 / (d1 - d3), d1 / (d1 - d3), 0.0
     d5, d6 = d1 - across, d2 - (cx * cx + cy * cy + cz * cz)
     if d6 >= 0 and d5 <= d6:
         return 0.0, 0.0, 1.0
-    wb = f[12] * x + f[13] * y + f[14] * z
+    wb = facets[f, 12] * x + facets[f, 13] * y + facets[f, 14] * z
     if wb <= 0 and d2 >= 0 and d6 <= 0:
         return 1 - d2 / (d2 - d6), 0.0, d2 / (d2 - d6)
     wa = 1 - wb - wc
@@ -52,23 +54,24 @@ def _closest(f, x, y, z):
 
 
 @njit(**OPTIONS)
-def _at(f, w):
+def _at(facets, f, w):
     """The point of a facet with these weights."""
+    a, b, c = w
     return (
-        w[0] * f[0] + w[1] * f[3] + w[2] * f[6],
-        w[0] * f[1] + w[1] * f[4] + w[2] * f[7],
-        w[0] * f[2] + w[1] * f[5] + w[2] * f[8],
+        a * facets[f, 0] + b * facets[f, 3] + c * facets[f, 6],
+        a * facets[f, 1] + b * facets[f, 4] + c * facets[f, 7],
+        a * facets[f, 2] + b * facets[f, 5] + c * facets[f, 8],
     )
 
 
 @njit(**OPTIONS)
-def _gain(f, has_back, at, extent, x, y, z):
+def _gain(facets, f, has_back, at, extent, x, y, z):
     """How much the square of the distance falls from `at` to the closest point of a facet."""
-    ax, ay, az = x - f[0], y - f[1], z - f[2]
-    height = f[9] * ax + f[10] * ay + f[11] * az
+    ax, ay, az = x - facets[f, 0], y - facets[f, 1], z - facets[f, 2]
+    height = facets[f, 9] * ax + facets[f, 10] * ay + facets[f, 11] * az
     if has_back and height < VISIBLE * (np.sqrt(ax * ax + ay * ay + az * az) + extent):
         return 0.0
-    c = _at(f, _closest(f, x, y, z))
+    c = _at(facets, f, _closest(facets, f, x, y, z))
     mx, my, mz = c[0] - at[0], c[1] - at[1], c[2] - at[2]
     if mx * mx + my * my + mz * mz <= (SAME_POINT * extent) ** 2:
         return 0.0
@@ -90,7 +93,7 @@ def _best_around(facets, edges, facet, corner, at, extent, x, y, z):
             k = 0
             while k < 2 and edges[here, k] != probe:
                 k += 1
-            gain = _gain(facets[here], has_back, at, extent, x, y, z)
+            gain = _gain(facets, here, has_back, at, extent, x, y, z)
             if gain > most:
                 best, most = here, gain
         if here == facet:
@@ -101,24 +104,24 @@ def _best_around(facets, edges, facet, corner, at, extent, x, y, z):
 @njit(**OPTIONS)
 def walk_hull(facets, edges, extent, facet, x, y, z):
     """The facet with the point closest to (x, y, z), and the three weights there."""
-    w = _closest(facets[facet], x, y, z)
+    w = _closest(facets, facet, x, y, z)
     has_back = edges[facet, 6] >= 0
     for _ in range(len(facets)):
         zeros = int(w[0] == 0) + int(w[1] == 0) + int(w[2] == 0)
         if zeros == 0:
             break
-        at = _at(facets[facet], w)
+        at = _at(facets, facet, w)
         if zeros == 1:
             edge = 0 if w[0] == 0 else (1 if w[1] == 0 else 2)
             other = edges[facet, 3 + edge]
-            if other >= 0 and _gain(facets[other], has_back, at, extent, x, y, z) <= 0:
+            if other >= 0 and _gain(facets, other, has_back, at, extent, x, y, z) <= 0:
                 other = -1
         else:
             corner = 0 if w[0] != 0 else (1 if w[1] != 0 else 2)
             other = _best_around(facets, edges, facet, corner, at, extent, x, y, z)
         if other < 0:
             break
-        facet, w = other, _closest(facets[other], x, y, z)
+        facet, w = other, _closest(facets, other, x, y, z)
     return facet, w
 
 
@@ -127,7 +130,7 @@ def search_hull(facets, first, count, x, y, z):
     """Of `count` facets from `first` on, the one closest to a point."""
     found, best = first, np.inf
     for facet in range(first, first + count):
-        c = _at(facets[facet], _closest(facets[facet], x, y, z))
+        c = _at(facets, facet, _closest(facets, facet, x, y, z))
         square = (c[0] - x) ** 2 + (c[1] - y) ** 2 + (c[2] - z) ** 2
         if square < best:
             found, best = facet, square

@@ -87,12 +87,12 @@ def _zone_of(boxes, box_zones, x, y, z):
 
 
 @njit(**OPTIONS)
-def _drawn_near(zone, x, y, z):
-    """As `locate._drawn_near`; `zone`: a row of `zones`."""
-    reach = FAR * zone[3]
-    dx = min(max(x - zone[0], -1e300), 1e300)
-    dy = min(max(y - zone[1], -1e300), 1e300)
-    dz = min(max(z - zone[2], -1e300), 1e300)
+def _drawn_near(zones, i, x, y, z):
+    """As `locate._drawn_near`, in the zone `i`."""
+    reach = FAR * zones[i, 3]
+    dx = min(max(x - zones[i, 0], -1e300), 1e300)
+    dy = min(max(y - zones[i, 1], -1e300), 1e300)
+    dz = min(max(z - zones[i, 2], -1e300), 1e300)
     largest = max(abs(dx), abs(dy), abs(dz))
     if largest <= reach / 2:
         return x, y, z
@@ -100,7 +100,7 @@ def _drawn_near(zone, x, y, z):
     share = reach / largest / length
     if share >= 1:
         return x, y, z
-    return zone[0] + share * dx, zone[1] + share * dy, zone[2] + share * dz
+    return zones[i, 0] + share * dx, zones[i, 1] + share * dy, zones[i, 2] + share * dz
 
 
 @njit(**OPTIONS)
@@ -109,20 +109,20 @@ def _box(at, origin, step, count):
 
 
 @njit(**OPTIONS)
-def _grid_start(zone, range_, starts, x, y, z):
-    i = _box(x, zone[4], zone[7], range_[4])
-    j = _box(y, zone[5], zone[8], range_[5])
-    k = _box(z, zone[6], zone[9], range_[6])
-    return starts[range_[7] + i + range_[4] * (j + range_[5] * k)]
+def _grid_start(zones, ranges, starts, i, x, y, z):
+    column = _box(x, zones[i, 4], zones[i, 7], ranges[i, 4])
+    row = _box(y, zones[i, 5], zones[i, 8], ranges[i, 5])
+    layer = _box(z, zones[i, 6], zones[i, 9], ranges[i, 6])
+    return starts[ranges[i, 7] + column + ranges[i, 4] * (row + ranges[i, 5] * layer)]
 
 
 @njit(**OPTIONS)
-def _weights(m, x, y, z):
-    """Coordinates in the tetrahedron whose row of `cells` is `m`."""
-    x, y, z = x - m[9], y - m[10], z - m[11]
-    a = m[0] * x + m[1] * y + m[2] * z
-    b = m[3] * x + m[4] * y + m[5] * z
-    c = m[6] * x + m[7] * y + m[8] * z
+def _weights(cells, i, x, y, z):
+    """Coordinates in the tetrahedron `i`."""
+    x, y, z = x - cells[i, 9], y - cells[i, 10], z - cells[i, 11]
+    a = cells[i, 0] * x + cells[i, 1] * y + cells[i, 2] * z
+    b = cells[i, 3] * x + cells[i, 4] * y + cells[i, 5] * z
+    c = cells[i, 6] * x + cells[i, 7] * y + cells[i, 8] * z
     return a, b, c, 1 - (a + b + c)
 
 
@@ -132,28 +132,28 @@ def _walk(cells, links, limit, cell, x, y, z):
     did."""
     before = -1
     for _ in range(limit):
-        w = _weights(cells[cell], x, y, z)
-        inner, face = INSIDE, -1
-        outer, exit_face = INSIDE, -1
+        w = _weights(cells, cell, x, y, z)
+        inner, ahead = INSIDE, -1
+        outer, left = INSIDE, 0
         for k in range(4):
             beyond = links[cell, k]
             if beyond < 0:
                 if w[k] < outer:
-                    outer, exit_face = w[k], k
+                    outer, left = w[k], beyond
             elif w[k] < inner and beyond != before:
-                inner, face = w[k], k
-        if face < 0:
-            return (cell if exit_face < 0 else links[cell, exit_face]), True
-        before, cell = cell, links[cell, face]
+                inner, ahead = w[k], beyond
+        if ahead < 0:
+            return (left if left < 0 else cell), True
+        before, cell = cell, ahead
     return cell, False
 
 
 @njit(**OPTIONS)
-def _search(cells, range_, x, y, z):
-    """The tetrahedron of a zone that holds a point best, and its smallest weight there."""
+def _search(cells, first, count, x, y, z):
+    """The one of `count` tetrahedra that holds a point best, and its smallest weight there."""
     found, best = -1, -np.inf
-    for cell in range(range_[0], range_[0] + range_[1]):
-        w = _weights(cells[cell], x, y, z)
+    for cell in range(first, first + count):
+        w = _weights(cells, cell, x, y, z)
         least = min(min(w[0], w[1]), min(w[2], w[3]))
         if least > best:
             found, best = cell, least
@@ -161,33 +161,34 @@ def _search(cells, range_, x, y, z):
 
 
 @njit(**OPTIONS)
-def _found(s, zone, begin, x, y, z):
+def _found(cells, links, facets, edges, zones, ranges, zone, begin, x, y, z):
     """The tetrahedron of a point; −1 − f: it is outside, near the facet f."""
     cell = begin
     if begin < 0:
-        cell = s.edges[-1 - begin, 6]
+        f = -1 - begin
+        cell = edges[f, 6]
         if cell < 0:
             return begin
-        f = s.facets[-1 - begin]
-        height = f[9] * (x - f[0]) + f[10] * (y - f[1]) + f[11] * (z - f[2])
-        if height > CLEARLY * s.zones[zone, 3]:
+        height = facets[f, 9] * (x - facets[f, 0]) + facets[f, 10] * (y - facets[f, 1])
+        height += facets[f, 11] * (z - facets[f, 2])
+        if height > CLEARLY * zones[zone, 3]:
             return begin
-    end, ended = _walk(s.cells, s.links, s.ranges[zone, 8], cell, x, y, z)
+    end, ended = _walk(cells, links, ranges[zone, 8], cell, x, y, z)
     if ended:
         return end
-    cell, least = _search(s.cells, s.ranges[zone], x, y, z)
+    cell, least = _search(cells, ranges[zone, 0], ranges[zone, 1], x, y, z)
     if least >= SEARCH_INSIDE:
         return cell
-    return -1 - search_hull(s.facets, s.ranges[zone, 2], s.ranges[zone, 3], x, y, z)
+    return -1 - search_hull(facets, ranges[zone, 2], ranges[zone, 3], x, y, z)
 
 
 @njit(**OPTIONS)
-def _place(s, zone, begin, x, y, z):
+def _place(cells, links, facets, edges, zones, ranges, zone, begin, x, y, z):
     """(cell, or −1 − facet, and four weights) of a finite point."""
-    found = _found(s, zone, begin, x, y, z)
+    found = _found(cells, links, facets, edges, zones, ranges, zone, begin, x, y, z)
     if found >= 0:
-        return found, _held(_weights(s.cells[found], x, y, z))
-    facet, w = walk_hull(s.facets, s.edges, s.zones[zone, 3], -1 - found, x, y, z)
+        return found, _held(_weights(cells, found, x, y, z))
+    facet, w = walk_hull(facets, edges, zones[zone, 3], -1 - found, x, y, z)
     return -1 - facet, (w[0], w[1], w[2], 0.0)
 
 
@@ -200,85 +201,93 @@ def _held(w):
 
 
 @njit(**OPTIONS)
-def _next(s, zone, last, near, x, y, z):
-    """As `_place`, of a point in a zone; `last`: where to begin, if `near`."""
-    x, y, z = _drawn_near(s.zones[zone], x, y, z)
-    if not near:
-        last = _grid_start(s.zones[zone], s.ranges[zone], s.starts, x, y, z)
-    return _place(s, zone, last, x, y, z)
-
-
-@njit(**OPTIONS)
-def _is_near(zone, x, y, z, u, v, w):
+def _is_near(zones, i, x, y, z, u, v, w):
     """Whether two points are no more than a box of the grid apart."""
-    return abs(x - u) <= zone[7] and abs(y - v) <= zone[8] and abs(z - w) <= zone[9]
+    return abs(x - u) <= zones[i, 7] and abs(y - v) <= zones[i, 8] and abs(z - w) <= zones[i, 9]
 
 
 @njit(**OPTIONS)
-def _of_zone(range_, cell):
+def _of_zone(ranges, i, cell):
     """Whether a cell, or −1 − facet, is one of the zone's."""
     if cell >= 0:
-        return range_[0] <= cell < range_[0] + range_[1]
-    return range_[2] <= -1 - cell < range_[2] + range_[3]
+        return ranges[i, 0] <= cell < ranges[i, 0] + ranges[i, 1]
+    return ranges[i, 2] <= -1 - cell < ranges[i, 2] + ranges[i, 3]
 
 
 @njit(**OPTIONS)
-def _locate_run(s, points, start, probes, weights, cells):
+def _is_finite(x, y, z):
+    return np.isfinite(x) and np.isfinite(y) and np.isfinite(z)
+
+
+@njit(**OPTIONS)
+def _locate_run(s, points, start, probes, weights, numbers):
+    cells, links, facets, edges, zones, ranges, boxes, box_zones, starts = s
     last, last_zone, u, v, w = 0, -1, 0.0, 0.0, 0.0
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
-        if not np.isfinite(x + y + z) and not (
-            np.isfinite(x) and np.isfinite(y) and np.isfinite(z)
-        ):
-            weights[i], probes[i], cells[i] = np.nan, 0, s.starts[0]
+        if not _is_finite(x, y, z):
+            weights[i], probes[i], numbers[i] = np.nan, 0, starts[0]
             continue
-        zone = _zone_of(s.boxes, s.box_zones, x, y, z)
+        zone = _zone_of(boxes, box_zones, x, y, z)
         if len(start) > 0:
-            last, near = start[i], _of_zone(s.ranges[zone], start[i])
+            last, near = start[i], _of_zone(ranges, zone, start[i])
         else:
-            near = zone == last_zone and _is_near(s.zones[zone], x, y, z, u, v, w)
-        last, share = _next(s, zone, last, near, x, y, z)
+            near = zone == last_zone and _is_near(zones, zone, x, y, z, u, v, w)
         last_zone, u, v, w = zone, x, y, z
-        cells[i] = last
+        x, y, z = _drawn_near(zones, zone, x, y, z)
+        if not near:
+            last = _grid_start(zones, ranges, starts, zone, x, y, z)
+        last, share = _place(cells, links, facets, edges, zones, ranges, zone, last, x, y, z)
+        numbers[i] = last
         for k in range(4):
             weights[i, k] = share[k]
-            probes[i, k] = s.links[last, 4 + k] if last >= 0 else s.edges[-1 - last, k % 3]
+            probes[i, k] = links[last, 4 + k] if last >= 0 else edges[-1 - last, k % 3]
 
 
 @njit(**OPTIONS)
 def _lookup_run(s, points, values, result):
-    cells, links = s.cells, s.links
+    cells, links, facets, edges, zones, ranges, boxes, box_zones, starts = s
     last, last_zone, u, v, w = -1, -1, 0.0, 0.0, 0.0
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
-        zone = _zone_of(s.boxes, s.box_zones, x, y, z)
-        if last >= 0 and zone == last_zone:
-            share = _weights(cells[last], x, y, z)
-            if min(min(share[0], share[1]), min(share[2], share[3])) >= 0:
-                p = links[last]
-                _mix(values, p[4], p[5], p[6], p[7], share, result[i])
-                continue
-        if not (np.isfinite(x) and np.isfinite(y) and np.isfinite(z)):
-            result[i] = np.nan
-            continue
-        near = zone == last_zone and _is_near(s.zones[zone], x, y, z, u, v, w)
-        last, share = _next(s, zone, last, near, x, y, z)
+        zone = _zone_of(boxes, box_zones, x, y, z)
+        near = zone == last_zone and _is_near(zones, zone, x, y, z, u, v, w)
         last_zone, u, v, w = zone, x, y, z
+        if near and last >= 0:
+            share = _weights(cells, last, x, y, z)
+            if min(min(share[0], share[1]), min(share[2], share[3])) >= 0:
+                _mix(values, links, last, 4, share, result, i)
+                continue
+        if not _is_finite(x, y, z):
+            result[i] = np.nan
+            last_zone = -1
+            continue
+        x, y, z = _drawn_near(zones, zone, x, y, z)
+        if not near:
+            last = _grid_start(zones, ranges, starts, zone, x, y, z)
+        # Most points end here. `_place` would find the same, but its call costs as much again.
         if last >= 0:
-            p = links[last]
-            _mix(values, p[4], p[5], p[6], p[7], share, result[i])
+            last, ended = _walk(cells, links, ranges[zone, 8], last, x, y, z)
+            if ended and last >= 0:
+                _mix(values, links, last, 4, _held(_weights(cells, last, x, y, z)), result, i)
+                continue
+        last, share = _place(cells, links, facets, edges, zones, ranges, zone, last, x, y, z)
+        if last >= 0:
+            _mix(values, links, last, 4, share, result, i)
         else:
-            p = s.edges[-1 - last]
-            _mix(values, p[0], p[1], p[2], p[0], share, result[i])
+            _mix(values, edges, -1 - last, 0, share, result, i)
 
 
 @njit(**OPTIONS)
-def _mix(values, p, q, r, s, share, result):
+def _mix(values, numbers, row, first, share, result, i):
+    """Row `i` of `result`: the mix of the rows of `values` that a row of `numbers` names."""
     kind = values.dtype.type
     a, b, c, d = kind(share[0]), kind(share[1]), kind(share[2]), kind(share[3])
-    first, second, third, fourth = values[p], values[q], values[r], values[s]
-    for k in range(len(result)):
-        result[k] = a * first[k] + b * second[k] + c * third[k] + d * fourth[k]
+    p, q, r = numbers[row, first], numbers[row, first + 1], numbers[row, first + 2]
+    s = numbers[row, first + 3] if first else p
+    for k in range(result.shape[1]):
+        mixed = a * values[p, k] + b * values[q, k]
+        result[i, k] = mixed + (c * values[r, k] + d * values[s, k])
 
 
 @njit(parallel=True, **OPTIONS)

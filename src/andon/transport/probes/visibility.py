@@ -13,8 +13,8 @@ share that counts for none  ½ (`CUT`)            the bound is loose: lit probes
                                                  on the dark side (Lauritzen 2007 cuts so, too)
 power                       3                    Majercik et al.'s sharpening
 least share                 0                    their implementation keeps 5 %: it leaks
-lift along the normal       5 % of the distance  a texel of 16² is 0.2 rad wide; walls seen at a
-                                                 slant would hide their own points
+lift along the normal       a tenth of the       a texel of 16² is 0.2 rad wide; walls seen at a
+                            distance             slant would hide their own points
 =========================== ==================== ==================================================
 
 `andon verify probes.leaks` has the figures.
@@ -43,7 +43,7 @@ _SAMPLES = 4
 # See the table above.
 CUT = 0.5
 SHARPNESS = 3
-LIFT = 0.05
+LIFT = 0.1
 
 # Relative: what float32 leaves of a mean square less the square of a mean is 1e-7 of it.
 LEAST_SPREAD = 1e-3

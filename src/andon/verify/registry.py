@@ -53,6 +53,7 @@ def rows() -> tuple[Row, ...]:
         lampshade,
         penumbra,
         photometry,
+        probe_space,
         relight,
         synthetic,
     )
@@ -65,4 +66,5 @@ def rows() -> tuple[Row, ...]:
         *synthetic.ROWS,
         *lampshade.ROWS,
         *photometry.ROWS,
+        *probe_space.ROWS,
     )

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from andon.quantities import Geometry, merged
 from andon.surface.movers import Mover
 from andon.surface.occluder import Occluder
+from andon.surface.placing import middle_of
 
 __all__ = ["EMPTY_GEOMETRY", "ObjectInfo", "ShadowBias", "SurfaceModel"]
 
@@ -139,9 +140,3 @@ class SurfaceModel:
     def is_distant_only(self) -> bool:
         """No positions are known: only directional, sky and hemisphere lamps can light it."""
         return bool(self.normals) and not self.depth and len(self.real.triangles) == 0
-
-
-def middle_of(points: NDArray[np.float64], /) -> NDArray[np.float64]:
-    """(3,) the middle of the bounding box of points (…, 3)."""
-    flat = points.reshape(-1, 3)
-    return 0.5 * (flat.min(axis=0) + flat.max(axis=0))

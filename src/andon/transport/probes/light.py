@@ -30,7 +30,7 @@ __all__ = ["ProbeLight", "probe_coefficients", "probe_illuminance", "probe_mix"]
 
 Float = NDArray[np.float64]
 
-# Points whose mixes are held at once: 36 probes of 27 numbers each, in float64.
+# Points that are looked up at once: where walls hide probes, four texels of 36 of them each.
 CHUNK = 1 << 14
 
 
@@ -73,13 +73,11 @@ def probe_illuminance(light: ProbeLight, points: Float, normals: Float, /) -> Fl
     for first in range(0, len(points), CHUNK):
         part = slice(first, first + CHUNK)
         mix = probe_mix(light, points[part], normals[part])
-        values = basis(normals[part], order)
-        own = np.einsum("qjkc,qk->qjc", lit[mix.probes], values)
-        lux[part] = np.einsum("qj,qjc->qc", mix.weights, own)
+        own = light.space.mixed(mix, lit)
+        lux[part] = np.einsum("qkc,qk->qc", own, basis(normals[part], order))
     return np.maximum(lux, 0)
 
 
 def probe_coefficients(light: ProbeLight, points: Float, /) -> Float:
     """Coefficients (q, k, 3) of luminance, cd/m², at points (q, 3) in free air."""
-    mix = probe_mix(light, points)
-    return np.einsum("qj,qjkc->qkc", mix.weights, light.coefficients[mix.probes])
+    return light.space.mixed(probe_mix(light, points), light.coefficients)

@@ -104,7 +104,7 @@ def leaks_on_surfaces(method: Method) -> float:
             lit_lux = np.maximum(irradiance(truth, lit_normals), 0).mean()
             points, normals = surfaces_of_dark_room(thickness, POINTS)
             mix = _weights(method, room, walls, space.locate(points), points, normals)
-            mixed = np.einsum("qj,qjkc->qkc", mix.weights, coefficients[mix.probes])
+            mixed = space.mixed(mix, coefficients)
             leaked = np.maximum(irradiance(mixed, normals), 0).mean()
             worst = max(worst, 100 * float(leaked / lit_lux))
     return worst
@@ -137,7 +137,7 @@ def leaks_in(
 
     def looked_up(how: Method, points: Float, n: Float) -> Float:
         mix = _weights(how, room, walls, space.locate(points), points, n)
-        mixed = np.einsum("qj,qjkc->qkc", mix.weights, coefficients[mix.probes])
+        mixed = space.mixed(mix, coefficients)
         return np.maximum(irradiance(mixed, n), 0)
 
     true_lux = np.maximum(irradiance(truth, normals[0]), 0)

@@ -17,16 +17,27 @@ Per object is the paper's. It is blind to what changes within the object: a trai
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.harmonics import basis, convolved, order_of
-from andon.transport.probes.hidden import Walls, hidden_mix
+from andon.files.volumes.model import ProbeVolume
+from andon.harmonics import basis, convolved, deringed, order_of
+from andon.transport.probes.cells import build_cells
+from andon.transport.probes.hidden import Walls, hidden_mix, walls_of
 from andon.transport.probes.space import Mix, ProbeSpace
+from andon.transport.probes.states import state_coefficients
 
-__all__ = ["ProbeLight", "probe_coefficients", "probe_illuminance", "probe_mix"]
+__all__ = [
+    "ProbeLight",
+    "light_between",
+    "probe_coefficients",
+    "probe_illuminance",
+    "probe_light",
+    "probe_mix",
+]
 
 Float = NDArray[np.float64]
 
@@ -48,6 +59,53 @@ class ProbeLight:
     space: ProbeSpace
     coefficients: Float
     walls: Walls | None = None
+
+
+def probe_light(
+    volume: ProbeVolume,
+    /,
+    *,
+    state: str | None = None,
+    blend_state: str | None = None,
+    blend: float = 0.0,
+    zones: Sequence[str] = (),
+    dering: bool = True,
+    visibility: bool = True,
+) -> ProbeLight:
+    """A volume's light as frames look it up.
+
+    Parameters
+    ----------
+    volume : from `read_volume` or a bake; its cells are built where nobody did.
+    state : which of its states; None: the first.
+    blend_state, blend : a second state, of which there is a share of 0…1.
+    zones : names of those in use; none given: all.
+    dering : smooth each probe as little as keeps its irradiance from going negative.
+    visibility : walls hide probes, where the volume has distances.
+
+    Raises
+    ------
+    InputError : there is no such state or zone; `blend` is not in 0…1 or has no second state; what
+        `build_cells` refuses.
+    """
+    coefficients = state_coefficients(volume, state, blend_state, blend)
+    if dering:
+        coefficients = deringed(coefficients)
+    return light_between(volume, coefficients, zones, visibility=visibility)
+
+
+def light_between(
+    volume: ProbeVolume,
+    coefficients: Float,
+    zones: Sequence[str] = (),
+    /,
+    *,
+    visibility: bool = True,
+) -> ProbeLight:
+    """Any light (n, k, 3), cd/m², between the probes of a volume; else as `probe_light`."""
+    cells = volume.cells or build_cells(volume.positions, volume.zones)
+    space = ProbeSpace(replace(volume, cells=cells), zones)
+    return ProbeLight(space, coefficients, walls_of(volume, cells) if visibility else None)
 
 
 def probe_mix(

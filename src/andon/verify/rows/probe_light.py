@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from andon.composite.model import Ambient
 from andon.engines.prepared import Prepared
 from andon.engines.probes import SceneProbes
-from andon.harmonics import deringed, irradiance
+from andon.harmonics import irradiance
 from andon.pipeline import EngineName, Renderer
 from andon.quantities import CameraFrame, Geometry, Material
 from andon.spaces import View, look_at
@@ -22,7 +22,7 @@ from andon.surface.model import ObjectInfo
 from andon.surface.objects import joined
 from andon.transport.probes.cells import build_cells
 from andon.transport.probes.hidden import Walls, hidden_mix, walls_of
-from andon.transport.probes.light import ProbeLight
+from andon.transport.probes.light import ProbeLight, probe_light
 from andon.transport.probes.space import Mix, ProbeSpace
 from andon.transport.probes.visibility import visible
 from andon.verify.probe_rooms import (
@@ -169,11 +169,7 @@ def _balls() -> tuple[Geometry, tuple[ObjectInfo, ...]]:
 def _coloured_light() -> ProbeLight:
     steps = np.linspace(-1.3, 1.3, 4)
     places = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
-    volume = volume_of(coloured_room(), places)
-    cells = build_cells(volume.positions, volume.zones)
-    volume = replace(volume, cells=cells)
-    light = deringed(volume.states["default"])
-    return ProbeLight(ProbeSpace(volume), light, walls_of(volume, cells))
+    return probe_light(volume_of(coloured_room(), places))
 
 
 def ball_setting(

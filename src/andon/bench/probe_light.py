@@ -60,6 +60,12 @@ def _against_numpy(lookup: Literal["pixel", "object"], visibility: bool) -> Duel
     return Duel(ours, peer, same, 0.999, gpu.adapter_name, peer_repeats=3)
 
 
+_LOOKUPS: tuple[tuple[Literal["pixel", "object"], bool], ...] = (
+    ("pixel", True),
+    ("pixel", False),
+    ("object", False),
+)
+
 ROWS: tuple[BenchRow, ...] = tuple(
     BenchRow(
         f"probes.light.{lookup}.{'walls' if visibility else 'open'}.numpy",
@@ -68,5 +74,5 @@ ROWS: tuple[BenchRow, ...] = tuple(
         WIDTH * HEIGHT,
         partial(_against_numpy, lookup, visibility),
     )
-    for lookup, visibility in (("pixel", True), ("pixel", False), ("object", False))
+    for lookup, visibility in _LOOKUPS
 )

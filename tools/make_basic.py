@@ -25,7 +25,7 @@ HALF_M, HEIGHT_M, WALL_M = 4.0, 3.0, 0.2
 PATCH_M = 1.0
 # Diffuse reflectances, linear: paint of saturated colours, and whitewash.
 REFLECTANCES = {
-    "floor": (0.55, 0.55, 0.53),
+    "floor": (0.48, 0.48, 0.47),
     "red": (0.63, 0.07, 0.06),
     "green": (0.10, 0.48, 0.11),
     "blue": (0.07, 0.13, 0.58),

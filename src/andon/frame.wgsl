@@ -7,6 +7,7 @@
 //!import andon/gbuffer/gbuffer.wgsl
 //!import andon/transport/direct/direct.wgsl
 //!import andon/composite/composite.wgsl
+//!import andon/composite/receivers.wgsl
 
 @group(0) @binding(0) var gbuffer: texture_2d<u32>;
 @group(0) @binding(1) var<uniform> view: ViewRecord;
@@ -15,21 +16,24 @@
 @group(0) @binding(3) var captured: texture_2d<f32>;
 // Where E0 is a picture: what one lux adds.
 @group(0) @binding(4) var per_lux: texture_2d<f32>;
-// cd/m² that the materials of virtual objects emit; MAX_OBJECT_MATERIALS of them.
+// Of the materials of virtual objects, MAX_OBJECT_MATERIALS of them: cd/m² that they emit, and
+// (taking.wgsl) what light they take.
 @group(0) @binding(5) var<uniform> emitted: array<vec4f, 4096>;
 
 fn added_lux(point: SurfacePoint) -> vec3f {
   let bias = select(direct.bias_real_m, direct.bias_object_m, (point.flags & OBJECT) != 0u);
-  let lux = illuminance(point.position, point.normal, bias, point.flags >> BODY_SHIFT);
+  let all = illuminance(point.position, point.normal, bias, point.flags >> BODY_SHIFT);
+  let lux = received_lux(point, all);
   return select(vec3f(0.0), lux, (point.flags & VALID) != 0u);
 }
 
 // The pictures below are half floats: what exceeds them is far beyond any display's white.
 const MOST: vec3f = vec3f(65504.0);
 
-fn objects(point: SurfacePoint, lux: vec3f, real: vec3f) -> vec3f {
+fn objects(point: SurfacePoint, pixel: vec2f, lux: vec3f, real: vec3f) -> vec3f {
   let material = min((point.flags >> MATERIAL_SHIFT) & 0xffffu, 4095u);
-  let virtual_linear = object_linear(point.reflectance, emitted[material].xyz, lux, ambient);
+  let received = standing_lux(point, pixel) + lux;
+  let virtual_linear = object_linear(point.reflectance, emitted[material].xyz, received, ambient);
   return select(real, virtual_linear, (point.flags & OBJECT) != 0u);
 }
 
@@ -47,7 +51,7 @@ fn point_at(pixel: vec2f) -> SurfacePoint {
   let point = point_at(pixel.xy);
   let lux = added_lux(point);
   let light = textureLoad(captured, vec2i(pixel.xy), 0).xyz;
-  return vec4f(min(objects(point, lux, relit_linear(light, lux, ambient)), MOST), 1.0);
+  return vec4f(min(objects(point, pixel.xy, lux, relit_linear(light, lux, ambient)), MOST), 1.0);
 }
 
 @fragment fn relit_with_maps(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
@@ -55,7 +59,7 @@ fn point_at(pixel: vec2f) -> SurfacePoint {
   let lux = added_lux(point);
   let at = vec2i(pixel.xy);
   let real = relit_by_maps(textureLoad(captured, at, 0).xyz, textureLoad(per_lux, at, 0).xyz, lux);
-  return vec4f(min(objects(point, lux, real), MOST), 1.0);
+  return vec4f(min(objects(point, pixel.xy, lux, real), MOST), 1.0);
 }
 
 @fragment fn illuminance_map(@builtin(position) pixel: vec4f) -> @location(0) vec4f {

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError, MachineError, nearest_name
@@ -172,6 +173,10 @@ class Renderer:
         bodies, filtered = self._engine.read_bodies(captured, handles[0], self._moment)
         report = self._report(captured, surface)
         return Frame(captured, surface, illuminance, luminance, image, report, bodies, filtered)
+
+    def picture(self, time_seconds: float = 0.0, view: str | None = None) -> NDArray[np.uint8]:
+        """Draws one view and returns its 8-bit codes (H, W, 3) alone, which is faster."""
+        return self._engine.picture(self.draw(time_seconds, view)[-1]).rgb
 
     def _view_name(self, view: str | None) -> str:
         if view is None:

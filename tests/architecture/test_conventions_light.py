@@ -14,6 +14,7 @@ from andon.errors import InputError
 from andon.files.pictures import read_picture, write_picture
 from andon.glow.model import Glow
 from andon.glow.reference import add_glow
+from andon.harmonics import basis, irradiance, project_cube
 from andon.lamps import (
     DirectionalLamp,
     HemisphereLamp,
@@ -286,3 +287,11 @@ def test_alpha(tmp_path):
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     OpenEXR.File(header, channels).write(str(tmp_path / "a.exr"))
     close(read_picture(tmp_path / "a.exr").values, 0.25)
+
+
+def test_spherical_harmonics():
+    root = np.sqrt(3 / (4 * np.pi))
+    close(basis(np.eye(3), 1)[:, 1:], root * np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]]))
+    sky = project_cube(np.full((6, 4, 4, 3), 7.0), 1)  # cd/m² from all sides
+    close(sky[0], 7 * np.sqrt(4 * np.pi))
+    close(irradiance(sky, Y), 7 * np.pi)

@@ -8,9 +8,10 @@ from andon.engines.prepared import prepare
 from andon.files.pictures import read_picture, write_exr, write_picture
 from andon.gbuffer import VIEW_RECORD, pack_view
 from andon.gpu.layout import HostStruct
+from andon.harmonics import cube_directions
 from andon.spaces import View, invert_rigid, rotate, transform_points
 from andon.surface.depth import DepthEncoding, depth_from_raw
-from andon.surface.load import object_geometry
+from andon.surface.objects import object_geometry
 from andon.surface.triangulate import triangulate_depth
 
 from .settings import ORIGIN, VIEW, X, Y, Z, close, grey, lamps_of, relit
@@ -172,3 +173,10 @@ def test_angles():
     table = {"kind": "spot", "position": [0, 0, 0], "direction": [0, -1, 0], "intensity_cd": 1}
     (lamp,) = lamps_of(table | {"inner_degrees": 30, "outer_degrees": 60})
     close([lamp.inner_radians, lamp.outer_radians], [np.pi / 6, np.pi / 3])
+
+
+def test_cube_maps():
+    directions = cube_directions(2)
+    close(directions.mean(axis=(1, 2)) * np.sqrt(1.5), [X, -X, Y, -Y, Z, -Z])
+    first = np.sign(directions[:, 0, 0])  # row 0, column 0 of each face
+    close(first, [[1, 1, 1], [-1, 1, -1], [-1, 1, -1], [-1, -1, 1], [-1, 1, 1], [1, 1, -1]])

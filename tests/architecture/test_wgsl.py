@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from andon.engines.gpu import RECEIVERS
 from andon.gpu import wgsl
 from andon.gpu.layout import HostStruct
 from andon.gpu.passes import shader_module
@@ -14,6 +15,7 @@ from andon.surface.stage import PLAIN, TEXTURED
 from andon.transport.direct.shadows.face_maps import DISTANCE, TRIANGLE
 from andon.transport.direct.stage import FILTER, SOFT_FILTER, SUM
 from andon.transport.direct.sum import sum_of_lamps
+from andon.transport.probes.stage import VARIANTS as PROBE_VARIANTS
 
 from .tree import modules
 
@@ -67,6 +69,10 @@ VARIANTS = {
     "hard samples": {SOFT_FILTER.format("linear"): SOFT_FILTER.format("none")},
     "one lamp of each kind": {SUM: summed(ONE_OF_EACH)},
     "no lamps": {SUM: summed([])},
+    "objects without lamps": {RECEIVERS.format(""): RECEIVERS.format("_lamps")},
+    "objects in probes": {RECEIVERS.format(""): RECEIVERS.format("_probes")},
+    "probes behind walls": PROBE_VARIANTS["walls"],
+    "probes of objects": PROBE_VARIANTS["object"],
 }
 
 
@@ -98,12 +104,8 @@ def test_imports_resolve(path):
     assert all(text.count(f"// ── {name}\n") <= 1 for name in MODULES)
 
 
-# For shaders of others, and for passes to come; tests/harmonics compiles and calls it.
-STANDALONE = {"andon/harmonics/harmonics.wgsl"}
-
-
 def test_every_module_is_used():
-    imported = {name for text in TEXTS.values() for name in IMPORT.findall(text)} | STANDALONE
+    imported = {name for text in TEXTS.values() for name in IMPORT.findall(text)}
     exchanged = {name for variant in VARIANTS.values() for name in variant.values()}
     assert set(MODULES) - set(PROGRAMS) <= imported | exchanged
     assert imported <= set(MODULES)

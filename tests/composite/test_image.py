@@ -13,8 +13,9 @@ from andon.quantities import CameraFrame, Material
 from andon.responses import SRGB
 from andon.spaces import View, look_at
 from andon.surface import reference
-from andon.surface.load import joined, surface_of_depth
+from andon.surface.load import surface_of_depth
 from andon.surface.model import SurfaceModel
+from andon.surface.objects import joined
 from comparison import assert_golden
 from worlds import ball, block, unit
 

@@ -18,7 +18,7 @@ from andon.lamps import (
     TubeLamp,
 )
 from andon.spaces import View, look_at
-from andon.surface.load import joined
+from andon.surface.objects import joined
 from worlds import ball, block, unit
 
 POSE = look_at(np.array([1.6, 1.7, 2.1]), np.array([-0.2, 0.6, -0.3]))

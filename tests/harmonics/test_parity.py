@@ -22,6 +22,21 @@ def test_irradiance_l2(gpu):
         200,
     )
     given = caller(*columns)[:, :3]
-    # float32: 2⁻²⁴ of each of nine terms.
+    # float32: some 2⁻²⁴ of each of nine terms.
     scale = np.abs(convolved(light) * np.abs(basis(normals))[..., None]).sum(axis=1)
     assert (np.abs(given - irradiance(light, normals)) <= 4e-7 * scale + 1e-6).all()
+
+
+def test_terms_of_band_4(gpu):
+    normals = units(200, 9)
+    module = "andon/harmonics/harmonics.wgsl"
+    parts = [
+        Caller(gpu, module, expression, 1, 200)(normals)
+        for expression in (
+            "high_terms(x[0].xyz).a",
+            "high_terms(x[0].xyz).b",
+            "vec4f(high_terms(x[0].xyz).c)",
+        )
+    ]
+    given = np.concatenate([parts[0], parts[1], parts[2][:, :1]], axis=1)
+    np.testing.assert_allclose(given, basis(normals, 4)[:, 16:], atol=2e-6)

@@ -118,12 +118,27 @@ def test_many_cubes_are_as_one(kind):
 
 
 @pytest.mark.parametrize("order", range(5))
-def test_latlong_is_the_plain_sum(order):
+def test_latlong_is_the_integral_over_its_pixels(order):
+    """Against a plain sum over 32 × 32 points in each pixel, with their own solid angles."""
     picture = np.random.default_rng(3).random((12, 24, 3))
-    plain = np.einsum(
-        "hwx,hwk,h->kx", picture, basis(latlong_directions(12), order), latlong_solid_angles(12)
+    fine = picture.repeat(32, axis=0).repeat(32, axis=1)
+    height = len(fine)
+    values = basis(latlong_directions(height), order)
+    plain = np.einsum("hwx,hwk,h->kx", fine, values, latlong_solid_angles(height))
+    np.testing.assert_allclose(project_latlong(picture, order), plain, atol=1e-3)
+    one_pixel = np.zeros((12, 24, 3))
+    one_pixel[2, 5] = 1
+    area = latlong_solid_angles(12)[2]
+    np.testing.assert_allclose(
+        project_latlong(one_pixel, 0)[0], area / np.sqrt(4 * np.pi), rtol=1e-14
     )
-    np.testing.assert_allclose(project_latlong(picture, order), plain, atol=1e-13)
+
+
+@pytest.mark.parametrize("height", [4, 16])
+def test_a_constant_panorama_has_a_mean_and_nothing_else(height):
+    given = project_latlong(np.ones((height, 2 * height, 3)), 4)
+    np.testing.assert_allclose(given[0], np.sqrt(4 * np.pi), rtol=1e-14)
+    np.testing.assert_allclose(given[1:], 0, atol=1e-13)
 
 
 def test_a_large_picture_is_read_in_parts():

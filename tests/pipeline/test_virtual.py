@@ -94,6 +94,19 @@ def test_other_objects_stand_on_it_and_cast_shadows(tmp_path, engine):
     np.testing.assert_allclose(frame.luminance.cd_m2[below & (points[..., 1] < 0)], 0, atol=1e-3)
 
 
+def test_what_moves_keeps_its_material_beside_the_surface(tmp_path, engine):
+    write_glb(tmp_path / "box.glb", block((1, 1, 1), (0, 0, 0)), colour=(0.1, 0.2, 0.9))
+    keys = [{"time_seconds": t, "position": [x, 0, -4]} for t, x in ((0, -9), (1, 0))]
+    box = {"mesh": "box.glb", "name": "box", "key": keys}
+    ambient = {"illuminance_lux": 100.0}
+    scene = virtual(tmp_path, lamp=[], ambient=ambient, object=[box])
+    renderer = andon.Renderer(scene, engine)
+    before, after = (renderer.render(t).luminance.cd_m2 for t in (0.0, 1.0))
+    np.testing.assert_allclose(after[14, 20], np.array([0.1, 0.2, 0.9]) * 100 / np.pi, rtol=0.02)
+    np.testing.assert_array_equal(before[14, 20], 0)
+    np.testing.assert_allclose(after[-1, 20], RHO * 100 / np.pi, rtol=6e-3)
+
+
 @pytest.mark.parametrize("projection", ["fisheye", "latlong"])
 def test_curved_views_see_it_too(tmp_path, engine, projection):
     camera = {"projection": projection, "width": 48, "height": 24}

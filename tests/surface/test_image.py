@@ -9,8 +9,9 @@ from andon.display.false_colour import depth_picture, normal_picture
 from andon.quantities import Material
 from andon.spaces import View, look_at
 from andon.surface import reference
-from andon.surface.load import joined, surface_of_depth
+from andon.surface.load import surface_of_depth
 from andon.surface.model import SurfaceModel
+from andon.surface.objects import joined
 from andon.surface.stage import SurfaceStage
 from comparison import assert_golden
 from worlds import ball, block

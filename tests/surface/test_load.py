@@ -230,7 +230,7 @@ def test_objects_share_no_slots(tmp_path):
 
 
 def test_too_many_materials_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("andon.surface.load.MAX_OBJECT_MATERIALS", 2)
+    monkeypatch.setattr("andon.surface.objects.MAX_OBJECT_MATERIALS", 2)
     write_glb(tmp_path / "lamp.glb", block((1, 1, 1), (0, 0, 0)), emissive=(1.0, 0.5, 0.25))
     lamps = [{"mesh": "lamp.glb", "name": f"l{index}"} for index in range(3)]
     assert loaded(tmp_path, object=lamps[:2]).objects.materials
@@ -240,7 +240,7 @@ def test_too_many_materials_are_refused(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("what", ["object", "surface"])
 def test_too_many_textures_are_refused(tmp_path, monkeypatch, what):
-    monkeypatch.setattr("andon.surface.load.MAX_TEXTURES", 3)
+    monkeypatch.setattr("andon.surface.meshes.MAX_TEXTURES", 3)
     write_png(tmp_path / "t.png", np.full((2, 2, 3), 99, np.uint8))
     write_many_materials(tmp_path / "many.obj", 4, "t.png")
     entry = {"mesh": "many.obj"}

@@ -8,8 +8,9 @@ import pytest
 from andon.quantities import Geometry, Material
 from andon.spaces import View, look_at
 from andon.surface import reference
-from andon.surface.load import joined, surface_of_depth
+from andon.surface.load import surface_of_depth
 from andon.surface.model import SurfaceModel
+from andon.surface.objects import joined
 from andon.surface.stage import SurfaceStage
 from comparison import assert_agree
 from worlds import ball, block, sheet, sphere_depth

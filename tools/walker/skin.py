@@ -133,42 +133,27 @@ def _sole(ankle: Float, sides: int) -> Float:
     return np.stack([ankle[0] + x, y, np.broadcast_to(ankle[2] + z, x.shape)], axis=-1)
 
 
-def _bound(heights: Float, names: list[str]) -> tuple[Int, Float]:
-    """Joints and weights (n, 4) of vertices at `heights` along joints from above to below.
+def _bound(heights: Float, names: list[str], rising: bool) -> tuple[Int, Float]:
+    """Joints and weights (n, 4) of vertices at `heights` along joints that rise, or descend.
 
-    Around the height of each joint after the first its skin is shared with the one above, evenly
+    Around the height of each joint after the first its skin is shared with the one before, evenly
     at the joint itself.
     """
     numbers = [NAMES.index(name) for name in names]
     joints = np.zeros((len(heights), 4), np.int64)
     weights = np.zeros((len(heights), 4))
     joints[:, 0], weights[:, 0] = numbers[0], 1.0
-    for above, below in pairwise(numbers):
-        share = np.clip((REST[below, 1] - heights) / BLEND_M / 2 + 0.5, 0, 1)
+    for before, after in pairwise(numbers):
+        beyond = (heights - REST[after, 1]) * (1 if rising else -1)
+        share = np.clip(beyond / BLEND_M / 2 + 0.5, 0, 1)
         share = share * share * (3 - 2 * share)
         mine = share > 0
-        joints[mine, 0], joints[mine, 1] = above, below
+        joints[mine, 0], joints[mine, 1] = before, after
         weights[mine, 0], weights[mine, 1] = 1 - share[mine], share[mine]
+    # Whole vertices have one joint, in the first place.
     done = weights[:, 1] >= 1
-    joints[done, 0], weights[done, 0] = joints[done, 1], 1.0
-    joints[done, 1], weights[done, 1] = 0, 0.0
-    joints[weights[:, 1] <= 0, 1] = 0
-    return joints, weights
-
-
-def _rising(heights: Float, names: list[str]) -> tuple[Int, Float]:
-    """The same of joints from below to above."""
-    numbers = [NAMES.index(name) for name in names]
-    joints = np.zeros((len(heights), 4), np.int64)
-    weights = np.zeros((len(heights), 4))
-    joints[:, 0], weights[:, 0] = numbers[0], 1.0
-    for below, above in pairwise(numbers):
-        share = np.clip((heights - REST[above, 1]) / BLEND_M / 2 + 0.5, 0, 1)
-        share = share * share * (3 - 2 * share)
-        mine = share > 0
-        joints[mine, 0], joints[mine, 1] = below, above
-        weights[mine, 0], weights[mine, 1] = 1 - share[mine], share[mine]
-    joints[weights[:, 1] <= 0, 1] = 0
+    joints[done, 0], weights[done, 0], weights[done, 1] = joints[done, 1], 1.0, 0.0
+    joints[weights == 0] = 0
     return joints, weights
 
 
@@ -179,8 +164,7 @@ def skin() -> Skin:
 
     def add(rings: Float, bound: tuple[Int, Float] | None, joints: list[str], rising: bool) -> None:
         vertices, triangles = _tube(rings)
-        bind = _rising if rising else _bound
-        pieces.append((vertices, triangles, *(bound or bind(vertices[:, 1], joints))))
+        pieces.append((vertices, triangles, *(bound or _bound(vertices[:, 1], joints, rising))))
 
     add(_upright(TORSO, 18), None, ["hips", "spine", "chest"], True)
     add(_upright(HEAD, 16), None, ["chest", "neck", "head"], True)

@@ -61,6 +61,41 @@ def relight(**typed: Any) -> None:
 
 
 @app.command()
+def clip(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
+    out: Annotated[
+        Path,
+        typer.Option("-o", "--out", help="WebP, PNG (APNG) or GIF; or a folder of PNGs."),
+    ],
+    start_seconds: Annotated[
+        float | None, typer.Option("--from", help="Session time of the first frame; default: 0.")
+    ] = None,
+    end_seconds: Annotated[
+        float | None,
+        typer.Option("--to", help="Session time of the end; default: scene.duration_seconds."),
+    ] = None,
+    frames_per_second: Annotated[
+        float | None, typer.Option("--fps", help="Default: scene.frames_per_second.")
+    ] = None,
+    view: Annotated[str | None, typer.Option(help="left or right of a stereo rig.")] = None,
+    engine: EngineOption = "auto",
+) -> None:
+    """Draw a scene over time: lamps, objects and their animations move.
+
+    The frame of the end is left out, so that a clip of a whole round loops without a stop.
+
+    Examples:
+
+        andon clip walk.toml -o walk.webp
+
+        andon clip walk.toml --from 1 --to 3 --fps 25 -o frames/
+    """
+    from andon.cli.clip import ClipOptions, run
+
+    run(ClipOptions(scene, out, start_seconds, end_seconds, frames_per_second, view, engine))
+
+
+@app.command()
 def demo(
     name: Annotated[str, typer.Argument(help="photo: a real photograph, relit.")] = "photo",
     out: Annotated[Path, typer.Option(help="Folder for the pictures.")] = Path("andon-demo"),

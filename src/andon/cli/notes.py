@@ -32,7 +32,7 @@ def notes_on(frame: Frame, prepared: Prepared, time_seconds: float) -> list[str]
     return [
         *model.notes,
         *_on_depth(surface),
-        *_on_objects(surface, model),
+        *_on_objects(surface, prepared, time_seconds),
         *_on_lamps(surface, prepared, time_seconds),
         *notes_on_bodies(surface, prepared.bodies(time_seconds), prepared.lamps(time_seconds)),
         *_on_lift(model),
@@ -77,19 +77,17 @@ def _on_depth(surface: Surface) -> list[str]:
     ]
 
 
-def _on_objects(surface: Surface, model: SurfaceModel) -> list[str]:
+def _on_objects(surface: Surface, prepared: Prepared, time_seconds: float) -> list[str]:
     """Objects without a pixel."""
-    table = model.objects_table
+    model, movers = prepared.surface, prepared.at(time_seconds).movers
     own = surface.is_object
     if surface.body_id is not None:
         own = own & (surface.body_id < 0)
     seen = set(model.object_of_slot[surface.material_id[own]].tolist())
-    ends = np.cumsum([info.triangles for info in table])
     notes: list[str] = []
-    for index, info in enumerate(table):
+    for index, info in enumerate(model.objects_table):
         if index not in seen:
-            part = model.objects.triangles[ends[index] - info.triangles : ends[index]]
-            where = _where(model.objects.positions[part].reshape(-1, 3), surface)
+            where = _where(model.corners_of(index, movers).reshape(-1, 3), surface)
             notes.append(
                 f"the object {info.name!r} covers no pixel: {where}; check position and scale"
             )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import typer
 
-from andon.cli import probes_place, probes_show
+from andon.cli import probes_bake, probes_place, probes_show
 from andon.cli.probes_files import probes_export, probes_info
 
 __all__ = ["probes_app"]
@@ -25,6 +25,7 @@ def _probes(context: typer.Context) -> None:
 
 # In the order of ``andon probes --help``.
 probes_app.command("place")(probes_place.place)
-probes_app.command("show")(probes_show.show)
+probes_app.command("bake")(probes_bake.bake)
 probes_app.command("info")(probes_info)
+probes_app.command("show")(probes_show.show)
 probes_app.command("export")(probes_export)

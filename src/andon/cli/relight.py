@@ -13,7 +13,7 @@ from andon.cli.typed import ASSUMED_AMBIENT_LUX, named_as_typed, scene_of
 from andon.errors import InputError
 from andon.quantities import Illuminance, photometric
 
-__all__ = ["run"]
+__all__ = ["check_view", "run"]
 
 PICTURES = (".png", ".jpg", ".jpeg")
 
@@ -28,7 +28,7 @@ def run(options: RelightOptions) -> None:
     from andon.pipeline import Renderer
 
     scene = scene_of(options)
-    _check_view(scene, options.view)
+    check_view(scene, options.view)
     with named_as_typed(options, len(scene.lamp) - len(options.lamps or ()), scene.file):
         renderer = Renderer(scene, options.engine)  # type: ignore[arg-type]
         frame = renderer.render(options.time_seconds, options.view)
@@ -62,7 +62,7 @@ def _refuse_overwriting(options: RelightOptions) -> None:
         taken.add(path.resolve())
 
 
-def _check_view(scene: Any, view: str | None) -> None:
+def check_view(scene: Any, view: str | None) -> None:
     """Refuses a view that the rig has not, before any file is read."""
     names = [name for name, _ in scene.rig.cameras] if scene.rig is not None else []
     if view is None or not names or view in names:

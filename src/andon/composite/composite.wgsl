@@ -16,7 +16,6 @@ fn relit_by_maps(dimmed: vec3f, per_lux: vec3f, added_lux: vec3f) -> vec3f {
   return max(dimmed + per_lux * added_lux, vec3f(0.0));
 }
 
-fn object_linear(reflectance: vec3f, emitted: vec3f, added_lux: vec3f, ambient: AmbientRecord) -> vec3f {
-  let received = max(ambient.object_lux + added_lux, vec3f(0.0));
-  return (reflectance * received * INVERSE_PI + emitted) * ambient.units_per_cd_m2;
+fn object_linear(reflectance: vec3f, emitted: vec3f, lux: vec3f, ambient: AmbientRecord) -> vec3f {
+  return (reflectance * max(lux, vec3f(0.0)) * INVERSE_PI + emitted) * ambient.units_per_cd_m2;
 }

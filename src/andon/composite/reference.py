@@ -41,9 +41,17 @@ def relit_linear(frame: CameraFrame, ambient: Ambient, added_lux: Float, /) -> F
     return np.maximum(dimmed + captured * (added_lux / ambient.illuminance_lux), 0)
 
 
-def object_luminance(surface: Surface, ambient: Ambient, added_lux: Float, /) -> Float:
-    """Luminance (H, W, 3) in cd/m² of diffuse virtual objects: ρ·E/π plus what they emit."""
-    received = np.maximum(np.asarray(ambient.dimming) * ambient.mean_lux + added_lux, 0)
+def object_luminance(
+    surface: Surface, ambient: Ambient, added_lux: Float, /, standing_lux: Float | None = None
+) -> Float:
+    """Luminance (H, W, 3) in cd/m² of diffuse virtual objects: ρ·E/π plus what they emit.
+
+    They stand in the mean of E0, dimmed, or in `standing_lux` (H, W, 3) where it is not NaN.
+    """
+    standing = np.asarray(ambient.dimming) * ambient.mean_lux
+    if standing_lux is not None:
+        standing = np.where(np.isnan(standing_lux), standing, standing_lux)
+    received = np.maximum(standing + added_lux, 0)
     return surface.reflectance * received / np.pi + surface.emitted_cd_m2
 
 
@@ -62,13 +70,14 @@ def compose(
     added_lux: Float,
     lamps: Sequence[Lamp],
     /,
+    standing_lux: Float | None = None,
 ) -> Float:
     """Luminance (H, W, 3) in cd/m² of the whole picture.
 
-    `added_lux` (H, W, 3) is ΔE, 0 in holes.
+    `added_lux` (H, W, 3) is ΔE, 0 in holes; `standing_lux` as in `object_luminance`.
     """
     real = frame.luminance_per_unit * relit_linear(frame, ambient, added_lux)
-    virtual = object_luminance(surface, ambient, added_lux)
+    virtual = object_luminance(surface, ambient, added_lux, standing_lux)
     luminance = np.where(surface.is_object[..., None], virtual, real)
     return draw_lamps(luminance, surface, lamps)
 

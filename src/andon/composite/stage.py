@@ -36,6 +36,7 @@ class CompositeStage:
         gbuffer_view: Any,
         view_buffer: Any,
         emitted_cd_m2: NDArray[np.float64],
+        taking: NDArray[np.uint8] | None = None,
     ) -> None:
         self.gpu, self.view, self.ambient = gpu, view, ambient
         self.has_maps = ambient.illuminance_lux.ndim == 3 or ambient.dimming_mode == "paper"
@@ -48,6 +49,8 @@ class CompositeStage:
         self._emitted = uniform_buffer(gpu, 16 * MAX_OBJECT_MATERIALS, "emitted")
         table = np.zeros((MAX_OBJECT_MATERIALS, 4), np.float32)
         table[: len(emitted_cd_m2), :3] = emitted_cd_m2
+        if taking is not None:
+            table[: len(taking), 3] = taking
         write_buffer(gpu, self._emitted, table)
         self.resources: dict[int, tuple[str, Any]] = {
             2: ("uniform", self._ambient),

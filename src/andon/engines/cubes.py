@@ -124,9 +124,13 @@ class CubeEngine(Protocol):
 def cube_setting(scene: Scene, prepared: Prepared, /) -> CubeSetting:
     """What captures of a scene see: what stands still, at the start of the session.
 
-    Raises `InputError` where there is nothing to see.
+    Things that move are neither seen nor cast shadows. Raises `InputError` where there are no
+    positions.
     """
     model = prepared.surface
+    still = model.objects_table[: len(model.objects_table) - len(model.movers)]
+    model = replace(model, movers=(), objects_table=still)
+    prepared = replace(prepared, surface=model)
     if model.is_distant_only:
         raise InputError(
             "has no positions, and light is captured at places",

@@ -7,6 +7,7 @@ host: a photograph's reflectance may exceed 1, where the G-buffer's 8 bits end.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from andon.gpu.device import open_gpu
 from andon.gpu.passes import FullscreenPass
 from andon.gpu.textures import make_texture, write_buffer
 from andon.harmonics import cube_directions
+from andon.quantities import Geometry
 from andon.surface.stage import SurfaceStage
 from andon.transport.direct import stage as direct
 from andon.transport.probes.capture import Seen
@@ -68,10 +70,9 @@ class GpuCubes:
             structs=STRUCTS,
             variants=gbuffer.projection_variant(view) | self._direct.variants,
         )
-        self._emitted = [
-            np.array([m.emissive_cd_m2 for m in part.materials], float).reshape(-1, 3)
-            for part in (setting.surface.real, setting.surface.objects)
-        ]
+        self._materials = tuple(
+            _Materials.of(part) for part in (setting.surface.real, setting.surface.objects)
+        )
         self._directions = cube_directions(size)
         # Depth is planar: along a ray it is longer by this.
         self._stretch = 1 / np.abs(self._directions).max(axis=-1)
@@ -109,20 +110,40 @@ class GpuCubes:
         with np.errstate(invalid="ignore"):
             points = position + self._directions * distance[..., None]
         is_object = valid & fields["is_object"]
+        reflectance = np.where(valid[..., None], fields["reflectance"], 0.0)
+        emitted = np.zeros_like(reflectance)
+        for table, own in zip(self._materials, (valid & ~is_object, is_object), strict=True):
+            number = fields["material_id"][own]
+            emitted[own] = table.emitted_cd_m2[number]
+            packed_rho, plain = reflectance[own], table.is_plain[number]
+            packed_rho[plain] = table.reflectance[number[plain]]
+            reflectance[own] = packed_rho
         return Seen(
             np.where(valid[..., None], points, np.nan),
             np.where(valid[..., None], fields["normal"], np.nan),
             distance,
             is_object,
-            np.where(valid[..., None], fields["reflectance"], 0.0),
-            self._emission(fields["material_id"], valid & ~is_object, is_object),
+            reflectance,
+            emitted,
         )
 
-    def _emission(
-        self, material: NDArray[np.int32], real: NDArray[np.bool_], virtual: NDArray[np.bool_]
-    ) -> Float:
-        emitted = np.zeros((*material.shape, 3))
-        for table, own in zip(self._emitted, (real, virtual), strict=True):
-            if table.any():
-                emitted[own] = table[material[own]]
-        return emitted
+
+@dataclass(frozen=True, eq=False)
+class _Materials:
+    """By number: what is emitted, ρ, and which ρ no texture changes.
+
+    Where none does, the material's own is as good as on the reference; the G-buffer's has 8 bits.
+    """
+
+    emitted_cd_m2: Float
+    reflectance: Float
+    is_plain: NDArray[np.bool_]
+
+    @staticmethod
+    def of(part: Geometry) -> _Materials:
+        rows = part.materials
+        return _Materials(
+            np.array([m.emissive_cd_m2 for m in rows], float),
+            np.clip(np.array([m.reflectance for m in rows], float), 0, 1),
+            np.array([m.texture is None or part.uvs is None for m in rows]),
+        )

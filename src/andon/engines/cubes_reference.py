@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -64,5 +66,5 @@ class ReferenceCubes:
             self._cube(met.emitted_cd_m2),
         )
 
-    def _cube(self, picture: NDArray[np.generic]) -> NDArray[np.generic]:
+    def _cube(self, picture: NDArray[Any]) -> NDArray[Any]:
         return picture.reshape(6, self.size, self.size, *picture.shape[2:])

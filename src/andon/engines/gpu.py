@@ -8,9 +8,11 @@ import numpy as np
 
 from andon import gbuffer
 from andon.composite import stage as composite
+from andon.composite.lamp_pictures import body_rectangle
 from andon.display.stage import DisplayStage
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
+from andon.engines.probes import NO_LAMPS, PROBES, taking
 from andon.glow.stage import GlowStage
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import open_gpu
@@ -19,10 +21,12 @@ from andon.gpu.textures import Texture, make_texture
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface.stage import GpuSurface, SurfaceStage
 from andon.transport.direct import stage as direct
+from andon.transport.probes.stage import ProbeBuffers, ProbePicture
 
 __all__ = ["GpuEngine"]
 
 FRAME = "andon/frame.wgsl"
+RECEIVERS = "andon/composite/receivers{}.wgsl"
 STRUCTS = gbuffer.STRUCTS | direct.STRUCTS | composite.STRUCTS
 
 
@@ -31,10 +35,11 @@ class _View:
 
     def __init__(self, engine: GpuEngine, frame: CameraFrame) -> None:
         gpu, prepared = engine.gpu, engine.prepared
-        self.frame = frame
+        self.frame, self.model = frame, prepared.surface
         self.has_lamps = False
         view = frame.view
-        self.surface = SurfaceStage(gpu, prepared.surface, view, engine.start.bodies)
+        start = engine.start
+        self.surface = SurfaceStage(gpu, prepared.surface, view, start.bodies, start.movers)
         seen = self.surface.surface
         self.composite = composite.CompositeStage(
             gpu,
@@ -43,6 +48,7 @@ class _View:
             seen.texture.view,
             seen.view_buffer,
             seen.emitted_cd_m2,
+            engine.taking,
         )
         self.composite.load(frame)
         self.luminance = make_texture(gpu, "rgba16float", view.width, view.height, label="light")
@@ -59,9 +65,13 @@ class _View:
             bind_group(gpu, own | self.composite.resources, "frame"),
             engine.direct.group,
         ]
+        self.probes: ProbePicture | None = None
+        if engine.probes is not None:
+            self.probes = ProbePicture(engine.probes, view, seen.texture.view, seen.view_buffer)
+            groups.append(bind_group(gpu, {0: ("float", self.probes.lux.view)}, "probes"))
         options: dict[str, Any] = {
             "structs": STRUCTS,
-            "variants": gbuffer.projection_variant(view) | engine.direct.variants,
+            "variants": gbuffer.projection_variant(view) | engine.variants,
         }
         entry = self._entry_point(prepared)
         self.relit = FullscreenPass(gpu, FRAME, entry, ["rgba16float"], groups, **options)
@@ -71,10 +81,24 @@ class _View:
             gpu, FRAME, "illuminance_map", [self.lux_map.format], groups, **options
         )
 
+    def object_rectangles(self) -> list[tuple[int, int, int, int]]:
+        """Where the objects that probes light are in the picture."""
+        model, view = self.model, self.frame.view
+        ends = np.cumsum([info.triangles for info in model.objects_table])
+        found: list[tuple[int, int, int, int]] = []
+        for info, end in zip(model.objects_table, ends.tolist(), strict=True):
+            if info.lit_by_probes:
+                if end > len(model.objects.triangles):  # it moves: it may be anywhere
+                    return [(0, 0, view.width, view.height)]
+                part = model.objects.triangles[end - info.triangles : end]
+                rectangle = body_rectangle(view, model.objects.positions[part].reshape(-1, 3))
+                found += [] if rectangle is None else [rectangle]
+        return found
+
     def _entry_point(self, prepared: Prepared) -> str:
         if self.composite.has_maps:
             return "relit_with_maps"
-        has_objects = len(prepared.surface.objects.triangles) > 0 or self.surface.has_bodies
+        has_objects = prepared.surface.has_objects or self.surface.has_bodies
         return "relit_with_objects" if has_objects else "relit"
 
 
@@ -92,6 +116,12 @@ class GpuEngine:
         self.prepared = prepared
         bias = prepared.surface.bias
         self.start = prepared.at(0.0)
+        probes = prepared.probes
+        self.taking = taking(prepared.surface, has_probes=probes is not None)
+        self.probes: ProbeBuffers | None = None
+        if probes is not None and (self.taking & PROBES).any():
+            slots = prepared.surface.object_of_slot
+            self.probes = ProbeBuffers(self.gpu, probes.dimmed, probes.lookup, slots)
         self.direct = direct.DirectStage(
             self.gpu,
             prepared.casters(self.start),
@@ -99,10 +129,19 @@ class GpuEngine:
             [body.name for body in self.start.bodies],
             bias_real_m=bias.real_m,
             bias_object_m=bias.object_m,
+            captured=frozenset() if probes is None else probes.captured,
         )
+        self.variants = self.direct.variants | self._receivers()
         self._views = {name: _View(self, frame) for name, frame in prepared.frames.items()}
         self._encoder: Any = None
         self.maps_redrawn = 0
+
+    def _receivers(self) -> dict[str, str]:
+        """Shaders for what light the virtual objects take."""
+        if self.probes is not None:
+            return {RECEIVERS.format(""): RECEIVERS.format("_probes")}
+        some = bool((self.taking & NO_LAMPS).any())
+        return {RECEIVERS.format(""): RECEIVERS.format("_lamps")} if some else {}
 
     @property
     def encoder(self) -> Any:
@@ -113,7 +152,8 @@ class GpuEngine:
 
     def see(self, view_name: str, moment: Moment) -> GpuSurface:
         """Records the drawing of the G-buffer."""
-        return self._views[view_name].surface.encode(self.encoder, moment.bodies)
+        stage = self._views[view_name].surface
+        return stage.encode(self.encoder, moment.bodies, moment.movers)
 
     def illuminate(self, seen: GpuSurface, moment: Moment) -> _View:
         """Brings shadow maps and lamps up to date; shared by both eyes."""
@@ -125,6 +165,9 @@ class GpuEngine:
         self, frame: CameraFrame, seen: GpuSurface, light: _View, moment: Moment
     ) -> Texture:
         """Records direct light and composite in one pass, then the visible lamps."""
+        if self.probes is not None and light.probes is not None:
+            self.probes.move(moment.object_middles)
+            light.probes.encode(self.encoder, light.object_rectangles())
         light.relit.encode(self.encoder, [light.luminance.view])
         light.has_lamps = light.composite.lamps.encode(
             self.encoder, light.luminance.view, seen, moment.lamps, frame.luminance_per_unit
@@ -167,6 +210,10 @@ class GpuEngine:
             own = surface.body_id >= 0
             surface.emitted_cd_m2[own] = alone[own]
         return surface, Illuminance(lux, word), self._cd_m2(luminance, light.frame), image.read()
+
+    def picture(self, image: DisplayStage) -> DisplayImage:
+        """What `encode` gave, as an array."""
+        return image.read()
 
     def read_bodies(
         self, frame: CameraFrame, seen: GpuSurface, moment: Moment

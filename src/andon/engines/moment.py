@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps import Body, Lamp
+from andon.quantities import Geometry
 
 __all__ = ["Moment"]
 
@@ -21,6 +22,8 @@ class Moment:
     time_seconds : since the start of the session.
     lamps : always the same names and kinds.
     bodies : luminous bodies; always the same names and triangles.
+    movers : virtual objects that move, in the order of `SurfaceModel.movers`; always the same
+        triangles and materials.
     object_middles : (n, 3) metres, world: the middle of the bounding box of each virtual object,
         in the order of `SurfaceModel.objects_table`.
     """
@@ -28,4 +31,5 @@ class Moment:
     time_seconds: float = 0.0
     lamps: tuple[Lamp, ...] = ()
     bodies: tuple[Body, ...] = ()
+    movers: tuple[Geometry, ...] = ()
     object_middles: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 3)))

@@ -1,4 +1,4 @@
-"""Frames of scenes without a photograph: black pictures, and light that is not there.
+"""Frames of scenes without a photograph: pictures of the sky alone, and light that is not there.
 
 The picture's white has to be constant over time, cheap and without a choice that moves with the
 camera. So it is a white diffuser that faces every distant lamp (directional, sky, hemisphere) at
@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from andon.composite.model import Ambient
 from andon.engines.reading import ambient_of, response_of, view_names_of, view_of
@@ -19,20 +18,35 @@ from andon.errors import InputError
 from andon.lamps import DirectionalLamp, HemisphereLamp, Lamp, SkyLamp
 from andon.quantities import CameraFrame, photometric
 from andon.scene import Scene
+from andon.transport.probes.capture import sky_luminance
 
-__all__ = ["ambient_without_photograph", "black_frames", "white_cd_m2"]
+__all__ = ["ambient_without_photograph", "sky_frames", "white_cd_m2"]
+
+# E0 where there is none, lx: what lamps add is divided by it, and multiplied by a black picture.
+NO_LUX = 1e-30
 
 
-def black_frames(scene: Scene, white: float, /) -> dict[str, CameraFrame]:
-    """A black picture for each view of the rig, of the size that its camera states.
+def sky_frames(scene: Scene, lamps: Sequence[Lamp], white: float, /) -> dict[str, CameraFrame]:
+    """For each view of the rig a picture of what is behind everything: the sky of sky lamps.
 
-    `white` is cd/m² of the linear value 1. Raises `InputError` where a camera states no size.
+    Black without such, or below their horizon. The sky stands still: it is that of the start.
+
+    Parameters
+    ----------
+    lamps : of the start.
+    white : cd/m² of the linear value 1.
+
+    Raises `InputError` where a camera states no size.
     """
+    skies = [lamp for lamp in lamps if isinstance(lamp, SkyLamp | HemisphereLamp)]
     frames: dict[str, CameraFrame] = {}
     for name in view_names_of(scene):
         view = view_of(scene, name, None).undistorted()
-        black = np.zeros((*view.shape, 3), np.float32)
-        frames[name] = CameraFrame(black, view, response_of(scene, None), white)
+        _, directions = view.rays_world()
+        sky = sky_luminance(skies, directions.reshape(-1, 3)).reshape(*view.shape, 3)
+        frames[name] = CameraFrame(
+            (sky / white).astype(np.float32), view, response_of(scene, None), white
+        )
     return frames
 
 
@@ -43,9 +57,10 @@ def ambient_without_photograph(scene: Scene, /) -> Ambient:
     """
     table = scene.ambient
     if table is None:
-        return Ambient(np.ones(3), (0.0, 0.0, 0.0))
+        return Ambient(np.full(3, NO_LUX))
     for key, remedy in (
         ("map", "state ambient.illuminance_lux"),
+        ("probes", "leave it out: without a photograph probes light everything that is drawn"),
         ("source", "make them [[lamp]]: without a photograph they light the scene themselves"),
     ):
         if getattr(table, key):
@@ -62,7 +77,9 @@ def white_cd_m2(scene: Scene, ambient: Ambient, lamps: Sequence[Lamp], /) -> flo
     """cd/m² of the linear value 1: as stated, else E/π of the distant lamps of `lamps` and E0."""
     if scene.capture is not None and scene.capture.luminance_per_unit:
         return scene.capture.luminance_per_unit
-    total: NDArray[np.float64] = np.asarray(ambient.dimming) * ambient.mean_lux
+    total = np.zeros(3)
+    if scene.ambient is not None:
+        total = np.asarray(ambient.dimming) * ambient.mean_lux
     for lamp in lamps:
         if isinstance(lamp, DirectionalLamp | SkyLamp):
             total = total + lamp.illuminance_lux

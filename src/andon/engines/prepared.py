@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
@@ -12,9 +14,10 @@ from andon.engines.checks import check_lamps
 from andon.engines.moment import Moment
 from andon.engines.photographless import (
     ambient_without_photograph,
-    black_frames,
+    sky_frames,
     white_cd_m2,
 )
+from andon.engines.probes import SceneProbes, ambient_of_probes, probes_of
 from andon.engines.reading import (
     ambient_of,
     exposure_of,
@@ -25,20 +28,21 @@ from andon.engines.reading import (
     source_of,
     view_of,
 )
+from andon.errors import InputError
 from andon.glow.model import Glow
 from andon.lamps import Body, Lamp, resolve_bodies, resolve_lamps
 from andon.lamps.sources import resolve_sources
-from andon.quantities import CameraFrame, Photometry
+from andon.quantities import CameraFrame, Photometry, merged
 from andon.scene import Scene
 from andon.surface.load import load_surface
-from andon.surface.model import SurfaceModel
+from andon.surface.model import SurfaceModel, middle_of
 from andon.surface.virtual import virtual_surface
-from andon.transport.direct.casters import OBJECTS, REAL, Casters
+from andon.transport.direct.casters import MOVERS, OBJECTS, REAL, Casters
 
 __all__ = ["Prepared", "prepare"]
 
 # Tables and keys that the schema has and this version does not draw; a frame says so.
-LATER_TABLES = ("baked", "probes", "glass", "gaze")
+LATER_TABLES = ("baked", "glass", "gaze")
 
 LATER_KEYS = {
     "surface": ("response", "reflectance_map"),
@@ -72,6 +76,7 @@ class Prepared:
     photometry : the word that every number carries.
     ignored : tables of the scene that this version does not draw.
     sources : names of the known lamps of E0, which `lamps` has with positive and negative light.
+    probes : light that virtual objects stand in instead of E0, or None.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -84,19 +89,30 @@ class Prepared:
     photometry: Photometry = "absolute"
     ignored: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
+    probes: SceneProbes | None = None
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
+        movers = tuple(mover.at(time_seconds) for mover in self.surface.movers)
+        moving = np.array([middle_of(part.positions[part.triangles]) for part in movers])
         return Moment(
             time_seconds,
             self.lamps(time_seconds),
             self.bodies(time_seconds),
-            self.surface.object_middles,
+            movers,
+            np.concatenate([self.surface.still_middles, moving.reshape(-1, 3)]),
         )
 
     def casters(self, moment: Moment) -> Casters:
         """What casts shadows at a moment."""
-        groups = [(REAL, self.surface.occluder.geometry), (OBJECTS, self.surface.casters)]
+        surface = self.surface
+        moving = [
+            part
+            for part, mover in zip(moment.movers, surface.movers, strict=True)
+            if mover.casts_shadow
+        ]
+        groups = [(REAL, surface.occluder.geometry), (OBJECTS, surface.casters)]
+        groups += [(MOVERS, merged(*moving))] if moving else []
         groups += [(body.name, body.geometry) for body in moment.bodies]
         return Casters(tuple(groups))
 
@@ -104,18 +120,20 @@ class Prepared:
 def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
     """Reads all that `scene` names. Raises `InputError` for whatever does not fit.
 
-    With `drawn` False there are no frames where there is no photograph, and neither rig nor white
-    are needed: for whoever only asks for light.
+    With `drawn` False there are no frames where there is no photograph, and neither rig, white nor
+    a volume of probes are needed: for whoever makes light, as bakes do.
     """
-    virtual = _virtual_groups(scene)
+    probes, notes = probes_of(scene) if drawn else (None, ())
+    seen = _photographed if scene.has_photograph else _all_virtual
+    frames, ambient, surface = seen(scene, probes, drawn)
+    virtual = _virtual_groups(scene, surface)
     lamps = (*resolve_lamps(scene, 0.0), *resolve_sources(scene, 0.0, virtual))
-    frames, ambient, surface = _seen(scene, lamps, drawn)
     if frames:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
     return Prepared(
         frames=frames,
-        surface=surface,
+        surface=replace(surface, notes=(*surface.notes, *notes)),
         ambient=ambient,
         lamps=lambda time_seconds: (
             *resolve_lamps(scene, time_seconds),
@@ -127,22 +145,38 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         photometry=scene.photometry,
         ignored=_ignored(scene),
         sources=tuple(table.name for table in scene.ambient.source) if scene.ambient else (),
+        probes=probes,
     )
 
 
-def _seen(
-    scene: Scene, lamps: tuple[Lamp, ...], drawn: bool
-) -> tuple[dict[str, CameraFrame], Ambient, SurfaceModel]:
-    """Frames, light and surface of the photograph, or of a scene that has none."""
-    if not scene.has_photograph:
-        ambient = ambient_without_photograph(scene)
-        surface = virtual_surface(scene)
-        frames = black_frames(scene, white_cd_m2(scene, ambient, lamps)) if drawn else {}
-        return frames, ambient, surface
+_Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel]
+
+
+def _all_virtual(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen:
+    """Frames, light and surface of a scene without a photograph."""
+    ambient = ambient_without_photograph(scene)
+    lamps = resolve_lamps(scene, 0.0)
+    frames = sky_frames(scene, lamps, white_cd_m2(scene, ambient, lamps)) if drawn else {}
+    return frames, ambient, virtual_surface(scene)
+
+
+def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen:
+    """Frames, light and surface of a photograph."""
     pictures = read_pictures(scene)
     views = {name: view_of(scene, name, picture.shape) for name, picture in pictures.items()}
-    ambient = ambient_of(scene, views)
     surface = load_surface(scene, views)
+    notes: tuple[str, ...] = ()
+    if scene.ambient is not None and scene.ambient.probes:
+        if not drawn:
+            raise InputError(
+                "is light that a bake does not have yet",
+                file=scene.file,
+                field="ambient.probes",
+                remedy="state ambient.illuminance_lux for the bake",
+            )
+        ambient, notes = ambient_of_probes(scene, probes, surface, views)
+    else:
+        ambient = ambient_of(scene, views)
     per_unit = luminance_per_unit_of(scene, ambient)
     frames = {
         name: frame_from_picture(
@@ -154,14 +188,15 @@ def _seen(
         )
         for name, picture in pictures.items()
     }
-    return frames, ambient, surface
+    return frames, ambient, replace(surface, notes=(*surface.notes, *notes))
 
 
-def _virtual_groups(scene: Scene) -> frozenset[str]:
+def _virtual_groups(scene: Scene, surface: SurfaceModel) -> frozenset[str]:
     """Caster groups that the photograph did not have: virtual objects, and bodies of lamps."""
     bodies = [body.name for body in resolve_bodies(scene, 0.0)]
-    casting = any(table.casts_shadow for table in scene.object)
-    return frozenset([*bodies, *([OBJECTS] if casting else [])])
+    still = [OBJECTS] if len(surface.casters.triangles) else []
+    moving = [MOVERS] if any(mover.casts_shadow for mover in surface.movers) else []
+    return frozenset([*bodies, *still, *moving])
 
 
 def _ignored(scene: Scene) -> tuple[str, ...]:

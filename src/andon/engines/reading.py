@@ -149,13 +149,6 @@ def ambient_of(scene: Scene, views: Mapping[str, View]) -> Ambient:
             field="ambient",
             remedy="add [ambient] with illuminance_lux",
         )
-    if table.probes:
-        raise InputError(
-            "is in the schema but not rendered yet",
-            file=scene.file,
-            field="ambient.probes",
-            remedy="state ambient.illuminance_lux",
-        )
     if table.map is not None:
         lux = _ambient_map(scene, table.map, views)
     else:

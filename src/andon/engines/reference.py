@@ -9,6 +9,7 @@ from andon.composite import reference as composite
 from andon.display import reference as display
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
+from andon.engines.probes import lampless_pixels, lit_pixels
 from andon.glow import reference as glow
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface import reference as surface
@@ -16,6 +17,8 @@ from andon.transport.direct import reference as direct
 from andon.transport.direct.casters import ShadowRays
 
 __all__ = ["ReferenceEngine"]
+
+Float = NDArray[np.float64]
 
 
 class ReferenceEngine:
@@ -27,15 +30,17 @@ class ReferenceEngine:
     def __init__(self, prepared: Prepared) -> None:
         self.prepared = prepared
         self._surfaces: dict[str, Surface] = {}
-        self._rays = ShadowRays(prepared.casters(Moment()))
+        self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
         self.maps_redrawn = 0
 
     def see(self, view_name: str, moment: Moment) -> Surface:
-        """The surface of a view; made once, but for bodies, since all else stands still."""
+        """The surface of a view; made once, but for what moves."""
         if view_name not in self._surfaces:
             view = self.prepared.frames[view_name].view
             self._surfaces[view_name] = surface.see(self.prepared.surface, view)
-        return surface.with_bodies(self._surfaces[view_name], moment.bodies)
+        still = self._surfaces[view_name]
+        seen = surface.with_movers(still, self.prepared.surface, moment.movers)
+        return surface.with_bodies(seen, moment.bodies)
 
     def illuminate(self, seen: Surface, moment: Moment) -> Illuminance:
         """Direct light of all lamps on the surface."""
@@ -46,14 +51,32 @@ class ReferenceEngine:
         bias_m: NDArray[np.float64] = np.where(seen.is_object, bias.object_m, bias.real_m)
         names = [body.name for body in moment.bodies]
         lux = direct.illuminate(seen, moment.lamps, self._rays, bias_m=bias_m, bodies=names)
-        return Illuminance(lux, self.prepared.photometry)
+        return Illuminance(self._received(seen, lux, moment), self.prepared.photometry)
+
+    def _received(self, seen: Surface, lux: Float, moment: Moment) -> Float:
+        """What objects take of `lux`: of those that lamps do not light nothing, and of those that
+        probes light no sky that the probes have captured.
+        """
+        model, probes = self.prepared.surface, self.prepared.probes
+        if probes is not None:
+            lit = lit_pixels(seen, model)
+            for lamp in moment.lamps:
+                if lamp.name in probes.captured:
+                    lux[lit] -= direct.illuminance(lamp, seen.position[lit], seen.normal[lit])
+        lux[lampless_pixels(seen, model)] = 0
+        return lux
 
     def compose(
         self, frame: CameraFrame, seen: Surface, light: Illuminance, moment: Moment
     ) -> Luminance:
         """The photograph under its new light, with objects and lamps in it."""
+        probes = self.prepared.probes
+        standing = None
+        if probes is not None:
+            standing = probes.standing_lux(seen, self.prepared.surface, moment.object_middles)
+        added = np.asarray(light.lux, np.float64)
         luminance = composite.compose(
-            frame, seen, self.prepared.ambient, np.asarray(light.lux, np.float64), moment.lamps
+            frame, seen, self.prepared.ambient, added, moment.lamps, standing
         )
         return Luminance(luminance, self.prepared.photometry)
 
@@ -82,6 +105,10 @@ class ReferenceEngine:
     ) -> tuple[Surface, Illuminance, Luminance, DisplayImage]:
         """The quantities as arrays: they are already."""
         return seen, light, luminance, image
+
+    def picture(self, image: DisplayImage) -> DisplayImage:
+        """What `encode` gave, as an array."""
+        return image
 
     def read_bodies(
         self, frame: CameraFrame, seen: Surface, moment: Moment

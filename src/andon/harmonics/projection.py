@@ -1,9 +1,13 @@
 """Light of cube maps and panoramas → coefficients: L_lm = Σ L·Y_lm·A, normalised by 4π/ΣA.
 
-A cube's sum is one matrix product with a cached matrix. A panorama's rows are circles around y, on
-which a harmonic of band l is a trigonometric polynomial of degree l: it is known from its values
-at 2·order + 1 places. So each row is first reduced to that many numbers (Dirichlet's kernel), and
-the large picture meets 5 weights instead of 9; the sum is the same to rounding.
+A cube's sum is a matrix product with a cached matrix; Y is taken at the texel's centre. Its error
+for smooth light falls as h²: 2.5e-5 at 128². With the paper's solid angles, which are those at the
+centre, too, it is half of that; exact ones are right for light that is constant in a texel.
+
+Of a panorama Y is integrated over each pixel, exactly: pixels at the poles are long triangles, and
+a constant sky must give a constant. Its rows are circles around y, on which a harmonic of band l
+is a trigonometric polynomial of degree l and known from 2·order + 1 values. So each row is first
+reduced to that many numbers (Dirichlet's kernel), and the large picture meets 5 weights, not 9.
 """
 
 from __future__ import annotations
@@ -17,7 +21,7 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.harmonics.basis import basis, coefficient_count
 from andon.harmonics.cubes import SolidAngle, cube_directions, cube_solid_angles
-from andon.harmonics.panoramas import check_latlong, latlong_solid_angles
+from andon.harmonics.panoramas import check_latlong
 
 __all__ = ["project_cube", "project_latlong"]
 
@@ -25,6 +29,8 @@ Float = NDArray[np.float64]
 
 # Values that are converted to float64 and multiplied at once: 32 MB.
 _CHUNK_VALUES = 1 << 22
+# Points in each row of a panorama.
+_GAUSS = 8
 
 
 def project_cube(
@@ -73,9 +79,9 @@ def _face_weights(size: int, order: int, kind: SolidAngle, face: int) -> Float:
 def project_latlong(picture: NDArray[Any], order: int = 2, /, *, signed: bool = False) -> Float:
     """Coefficients ((order + 1)², 3) of a latlong panorama (H, 2H, 3), in its unit.
 
-    `picture` is of any real type, ≥ 0 and finite; only a difference of lights is `signed`. Values
-    stand at pixel centres, each with the exact solid angle of its pixel. The middle of the picture
-    is −Z; turn the coefficients (`rotated`) where it is not.
+    `picture` is of any real type, ≥ 0 and finite; only a difference of lights is `signed`. The
+    integral of Y over a light that is constant in each pixel. The middle of the picture is −Z;
+    turn the coefficients (`rotated`) where it is not.
     """
     check_latlong(picture)
     count = coefficient_count(order)
@@ -88,33 +94,39 @@ def project_latlong(picture: NDArray[Any], order: int = 2, /, *, signed: bool = 
         chunk = picture[start : start + step].astype(np.float64)
         _check_light(chunk, "panorama", signed)
         np.matmul(kernel, chunk, out=reduced[start : start + step])
-    weights = latlong_solid_angles(height)  # sum to 4π
-    values = basis(_node_directions(height, nodes), order) * weights[:, None, None]
-    return values.reshape(-1, count).T @ reduced.reshape(-1, 3)
+    weights = _row_weights(height, order)
+    return weights.reshape(-1, count).T @ reduced.reshape(-1, 3)
 
 
 def _dirichlet(width: int, nodes: int) -> Float:
-    """(nodes, width): trigonometric polynomials from their values at `nodes` (odd) azimuths.
+    """(nodes, width): means over columns of trigonometric polynomials that are known at `nodes`.
 
-    f(φ) = Σ f(φ_j)·D(φ − φ_j), D(t) = (1 + 2 Σ_{m ≤ (nodes−1)/2} cos mt)/nodes.
+    f(φ) = Σ f(φ_j)·D(φ − φ_j), D(t) = (1 + 2 Σ_{m ≤ (nodes−1)/2} cos mt)/nodes, `nodes` odd; over a
+    column of width w the mean of cos mt is its middle times sin(mw/2)/(mw/2).
     """
     azimuth = (np.arange(width) + 0.5) / width * (2 * np.pi)
     node = np.arange(nodes) / nodes * (2 * np.pi)
     kernel = np.ones((nodes, width))
     for degree in range(1, nodes // 2 + 1):
-        kernel += 2 * np.cos(degree * (azimuth[None, :] - node[:, None]))
+        wave = np.cos(degree * (azimuth[None, :] - node[:, None]))
+        kernel += 2 * np.sinc(degree / width) * wave
     return kernel / nodes
 
 
-def _node_directions(height: int, nodes: int) -> Float:
-    """(height, nodes, 3) unit directions of the places that stand for each row.
+def _row_weights(height: int, order: int) -> Float:
+    """(height, nodes, k) integrals of Y over the polar angle of each row, at the nodes' azimuths.
 
-    Azimuth 0 is the left border, +Z; it rises towards −X … the middle, −Z.
+    Times the width of a pixel. Gauss–Legendre in each row; the rule's error is below rounding from
+    4 rows on. Azimuth 0 is the left border, +Z; it rises towards −X, −Z (the middle) and +X.
     """
-    polar = ((np.arange(height) + 0.5) / height * np.pi)[:, None]
-    azimuth = (np.arange(nodes) / nodes * (2 * np.pi))[None, :]
+    nodes = 2 * order + 1
+    place, share = np.polynomial.legendre.leggauss(_GAUSS)
+    polar = (np.arange(height)[:, None, None] + (place[:, None] + 1) / 2) * (np.pi / height)
+    azimuth = np.arange(nodes) * (2 * np.pi / nodes)
     x, z = -np.sin(polar) * np.sin(azimuth), np.sin(polar) * np.cos(azimuth)
-    return np.stack([x, np.broadcast_to(np.cos(polar), x.shape), z], axis=-1)
+    directions = np.stack([x, np.broadcast_to(np.cos(polar), x.shape), z], axis=-1)
+    area = np.sin(polar[..., 0]) * share * (np.pi / height) ** 2 / 2
+    return np.einsum("rg,rgnk->rnk", area, basis(directions, order))
 
 
 def _check_light(values: Float, what: str, signed: bool) -> None:

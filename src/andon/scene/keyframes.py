@@ -1,4 +1,4 @@
-"""Lamps that move and change: the value between two keyframes."""
+"""Lamps and objects that move and change: the value between two keyframes."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
+from andon.quaternions import slerp
 from andon.scene.lamp_base import LampKey, LampTable
+from andon.scene.objects import SceneObject
 
-__all__ = ["lamp_at"]
+__all__ = ["lamp_at", "object_at"]
 
 Float = NDArray[np.float64]
 L = TypeVar("L", bound=LampTable)
@@ -24,8 +26,7 @@ def lamp_at(lamp: L, time_seconds: float) -> L:
     great circle at a constant rate), constant before the first and after the last.
     Raises `InputError` if `time_seconds` is not finite.
     """
-    if not np.isfinite(time_seconds):
-        raise InputError(f"must be finite, got {time_seconds}", field="time_seconds")
+    _check_time(time_seconds)
     if not lamp.key:
         return lamp
     values: dict[str, Any] = {"key": ()}
@@ -33,6 +34,42 @@ def lamp_at(lamp: L, time_seconds: float) -> L:
         keys = [key for key in lamp.key if getattr(key, name) is not None]
         values[name] = _value(keys, name, time_seconds)
     return lamp.model_copy(update=values)
+
+
+def object_at(entry: SceneObject, time_seconds: float) -> Float:
+    """(4, 4) world_from_object at one moment, metres.
+
+    Position and rotation each run through the keys that set them: straight, and the shorter way at
+    a constant rate; constant before the first and after the last. What no key sets is the object's
+    own. Raises `InputError` if `time_seconds` is not finite.
+    """
+    _check_time(time_seconds)
+    values: dict[str, Any] = {}
+    for name in ("position", "rotation_xyzw"):
+        keys = [key for key in entry.key if getattr(key, name) is not None]
+        if keys:
+            times = np.array([key.time_seconds for key in keys])
+            stated = np.array([getattr(key, name) for key in keys])
+            values[name] = tuple(_along(times, stated, time_seconds, name).tolist())
+    return entry.model_copy(update=values).world_from_object()
+
+
+def _along(times: Float, stated: Float, time_seconds: float, name: str) -> Float:
+    """One of `stated` (n, w) at `times` (n,), or what lies between two of them."""
+    after = int(np.searchsorted(times, time_seconds, side="right"))
+    if after == 0 or after == len(times):
+        return stated[max(0, after - 1)]
+    span = times[after] - times[after - 1]
+    share = float((time_seconds - times[after - 1]) / span)
+    first, second = stated[after - 1], stated[after]
+    if name == "rotation_xyzw":
+        return slerp(first, second, share)
+    return (1 - share) * first + share * second
+
+
+def _check_time(time_seconds: float) -> None:
+    if not np.isfinite(time_seconds):
+        raise InputError(f"must be finite, got {time_seconds}", field="time_seconds")
 
 
 def _value(keys: Sequence[LampKey], name: str, time_seconds: float) -> Any:

@@ -66,7 +66,9 @@ class Placed(Table):
 
 
 class ObjectKey(Table):
-    """One keyframe of an object."""
+    """One keyframe of an object. Between keys it moves straight and turns the shorter way at a
+    constant rate; outside it stays.
+    """
 
     time_seconds: float = Field(description="Session time of the key in seconds.")
     position: Vector | None = Field(
@@ -77,6 +79,12 @@ class ObjectKey(Table):
         default=None,
         description="Unit quaternion (x, y, z, w).",
     )
+
+    @model_validator(mode="after")
+    def _check_sets(self) -> ObjectKey:
+        if self.position is None and self.rotation_xyzw is None:
+            raise refusal("needs position or rotation_xyzw")
+        return self
 
 
 class SceneObject(Placed):
@@ -89,19 +97,20 @@ class SceneObject(Placed):
     mesh: Reference = Field(description="glTF file.")
     animation: Name | None = Field(
         default=None,
-        description="Animation of the file that plays.",
+        description="Animation of the glTF file that plays: its name, or its number from 0; "
+        "without one the object has the pose of the file.",
     )
     animation_start_seconds: float = Field(
         default=0.0,
-        description="Session time of its beginning.",
+        description="Session time of its beginning; before, its first pose is held.",
     )
     animation_speed: float = Field(
         default=1.0,
-        description="1: as in the file; 0: stands still.",
+        description="1: as in the file; 0: stands still; below 0: from its end backwards.",
     )
     loop: bool = Field(
         default=True,
-        description="The animation begins again at its end.",
+        description="The animation begins again at its end; else its last pose is held.",
     )
     lamps: bool = Field(
         default=False,
@@ -122,7 +131,8 @@ class SceneObject(Placed):
     )
     key: tuple[ObjectKey, ...] = Field(
         default=(),
-        description="[[object.key]]: keyframes, rising times.",
+        description="[[object.key]]: keyframes, rising times. What no key states is the object's "
+        "own.",
     )
 
     @model_validator(mode="after")
@@ -130,6 +140,9 @@ class SceneObject(Placed):
         for index, (before, after) in enumerate(pairwise(self.key), start=1):
             if not after.time_seconds > before.time_seconds:
                 raise refusal("must be later than the key before", key=f"key[{index}].time_seconds")
+        if self.key and self.transform is not None:
+            remedy = "state position, rotation_xyzw and scale"
+            raise refusal("excludes keyframes", key="transform", remedy=remedy)
         return self
 
 

@@ -99,11 +99,11 @@ class Placement(Table):
     )
     low: Vector | None = Field(
         default=None,
-        description="Of the box, metres, world; default: the surface's bounds.",
+        description="Of the box, metres, world; default: the surface's bounds (vertices: none).",
     )
     high: Vector | None = Field(
         default=None,
-        description="Of the box, metres, world; default: the surface's bounds.",
+        description="Of the box, metres, world; default: the surface's bounds (vertices: none).",
     )
     spacing_m: Positive | None = Field(
         default=None,
@@ -131,7 +131,8 @@ class Placement(Table):
     offset_m: NonNegative = Field(
         default=0.1,
         description="Of kind vertices: distance from the surface, along its normal, metres. "
-        "Lattices leave this much to the walls of their box.",
+        "Lattices and random places leave this much to the walls of their box, and random ones "
+        "to surfaces.",
     )
     role: ProbeRole = Field(
         default="general",

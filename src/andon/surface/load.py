@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,28 +11,20 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.depth import read_depth_array
-from andon.files.meshes import read_mesh
 from andon.files.pictures import read_picture
 from andon.lenses import undistort
-from andon.quantities import MAX_OBJECT_MATERIALS, Geometry, Material, merged
-from andon.rays import face_normals
+from andon.quantities import Geometry, Material, merged
 from andon.scene import Scene
-from andon.spaces import View, rotate, transform_points
+from andon.spaces import View, rotate
 from andon.surface.depth import DepthEncoding, depth_from_raw
-from andon.surface.model import EMPTY_GEOMETRY, ObjectInfo, ShadowBias, SurfaceModel
+from andon.surface.meshes import check_textures, read_geometry, rest_note
+from andon.surface.model import ShadowBias, SurfaceModel
 from andon.surface.normals import normals_from_depth
+from andon.surface.objects import load_objects
 from andon.surface.occluder import decimated
-from andon.surface.textures import with_linear_textures
 from andon.surface.triangulate import thickened, triangulate_depth
 
-__all__ = [
-    "check_textures",
-    "load_surface",
-    "mesh_geometry",
-    "object_geometry",
-    "surface_of_depth",
-    "surface_of_mesh",
-]
+__all__ = ["load_surface", "mesh_geometry", "surface_of_depth", "surface_of_mesh"]
 
 Float = NDArray[np.float64]
 
@@ -49,15 +40,8 @@ MESH_BIAS_M = 2e-4
 DEPTH_BIAS_M = 5e-3
 DECIMATION_MARGIN = 2.0
 
-# An array texture has at least 256 layers on every adapter (WebGPU, table of limits).
-MAX_TEXTURES = 256
-
 # Camera axes of a file's normals → our camera frame (x right, y down, z forward).
 NORMAL_AXES = {"opencv": np.eye(3), "opengl": np.diag([1.0, -1.0, -1.0])}
-
-# Units and axes are the scene's for formats that do not define them; glTF is metres, +Y up.
-UNITLESS_SUFFIXES = {".obj", ".ply"}
-Y_UP_FROM_Z_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
 def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
@@ -65,7 +49,7 @@ def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
 
     Raises `InputError` for files that are missing, of the wrong size or without geometry.
     """
-    objects = _objects(scene)
+    objects = load_objects(scene)
     if scene.surface is None:
         model = SurfaceModel()
     elif scene.surface.depth is not None:
@@ -94,6 +78,7 @@ def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
         objects=objects.objects,
         casters=objects.casters,
         objects_table=objects.objects_table,
+        movers=objects.movers,
         notes=(*model.notes, *objects.notes),
     )
 
@@ -188,11 +173,11 @@ def mesh_geometry(scene: Scene, /) -> tuple[Geometry, tuple[str, ...]]:
     world_from_mesh = np.eye(4)
     if scene.surface.world_from_mesh is not None:
         world_from_mesh = np.array(scene.surface.world_from_mesh)
-    real, notes = _read_geometry(scene, path, world_from_mesh)
+    real, file = read_geometry(scene, path, world_from_mesh)
     if scene.surface.reflectance is not None:
         real = _with_reflectance(real, scene.surface.reflectance)
     check_textures(real, scene, "surface.mesh")
-    return real, notes
+    return real, rest_note(path, file)
 
 
 def _from_mesh(scene: Scene, view: View) -> SurfaceModel:
@@ -211,140 +196,6 @@ def _with_reflectance(geometry: Geometry, reflectance: Any) -> Geometry:
     triple = tuple(float(x) for x in np.broadcast_to(reflectance, 3))
     material = Material("surface", triple)  # type: ignore[arg-type]
     return replace(geometry, materials=(material,), material_ids=None)
-
-
-def _read_geometry(
-    scene: Scene, path: Path, world_from_mesh: Float
-) -> tuple[Geometry, tuple[str, ...]]:
-    """The triangles of a file in the world, and what is to be said of them."""
-    mesh = read_mesh(path)
-    geometry = mesh.geometry
-    notes: tuple[str, ...] = ()
-    if mesh.at_rest:
-        what = " and ".join(mesh.at_rest)
-        notes = (f"{path.name} has {what}: it is drawn in its pose of rest, and does not move",)
-    if path.suffix.lower() in UNITLESS_SUFFIXES:
-        scale = np.eye(4)
-        scale[:3, :3] = np.eye(3) if scene.scene.up == "y" else Y_UP_FROM_Z_UP
-        scale[:3, :3] *= scene.scene.metres_per_unit
-        world_from_mesh = world_from_mesh @ scale
-    return with_linear_textures(_placed(geometry, world_from_mesh)), notes
-
-
-def _placed(geometry: Geometry, world_from_mesh: Float) -> Geometry:
-    positions = transform_points(world_from_mesh, geometry.positions)
-    triangles = geometry.triangles
-    if np.linalg.det(world_from_mesh[:3, :3]) < 0:  # a mirror turns triangles inside out
-        triangles = triangles[:, ::-1]
-    normals = geometry.normals
-    if normals is not None:
-        turned = normals @ np.linalg.inv(world_from_mesh[:3, :3])
-        length = np.linalg.norm(turned, axis=1, keepdims=True)
-        normals = np.divide(turned, length, out=np.zeros_like(turned), where=length > 0)
-    return replace(geometry, positions=positions, triangles=triangles, normals=normals)
-
-
-def object_geometry(scene: Scene, index: int, /) -> Geometry:
-    """The triangles of ``scene.object[index]`` in the world."""
-    return _object(scene, index)[0]
-
-
-def _object(scene: Scene, index: int) -> tuple[Geometry, tuple[str, ...]]:
-    """Its triangles in the world, and what is to be said of them."""
-    entry = scene.object[index]
-    field = f"object[{index}]"
-    for key in ("animation", "key"):
-        if getattr(entry, key):
-            raise InputError(
-                f"{key} is in the schema but not rendered yet",
-                file=scene.file,
-                field=f"{field}.{key}",
-                remedy="leave it out: the object stands still",
-            )
-    path = scene.path(entry.mesh, f"{field}.mesh")
-    return _read_geometry(scene, path, entry.world_from_object())
-
-
-def _objects(scene: Scene) -> SurfaceModel:
-    """All virtual objects as one geometry with their materials, and those that cast shadows."""
-    read = [_object(scene, index) for index in range(len(scene.object))]
-    parts = [geometry for geometry, _ in read]
-    if not parts:
-        return SurfaceModel()
-    casting = [p for p, entry in zip(parts, scene.object, strict=True) if entry.casts_shadow]
-    objects = joined(parts)
-    check_textures(objects, scene, "object")
-    return SurfaceModel(
-        objects=objects,
-        casters=merged(*casting) if casting else EMPTY_GEOMETRY,
-        objects_table=_objects_table(scene, parts),
-        # One file may stand in several places.
-        notes=tuple(dict.fromkeys(note for _, notes in read for note in notes)),
-    )
-
-
-def _objects_table(scene: Scene, parts: list[Geometry]) -> tuple[ObjectInfo, ...]:
-    """Which slots each object has; refuses more than there are."""
-    starts = np.cumsum([0, *(len(part.materials) for part in parts)]).tolist()
-    if starts[-1] > MAX_OBJECT_MATERIALS:
-        raise InputError(
-            f"virtual objects have {starts[-1]} materials, at most {MAX_OBJECT_MATERIALS} can be "
-            "told apart",
-            file=scene.file,
-            field="object",
-            remedy="let parts share materials, or leave objects out",
-        )
-    table: list[ObjectInfo] = []
-    for index, (entry, part) in enumerate(zip(scene.object, parts, strict=True)):
-        name = entry.name if "name" in entry.model_fields_set else f"object[{index}]"
-        own = (starts[index], len(part.materials), len(part.triangles))
-        table.append(ObjectInfo(name, *own, entry.lit_by_probes, entry.lit_by_lamps))
-    return tuple(table)
-
-
-def check_textures(geometry: Geometry, scene: Scene, field: str) -> None:
-    """Refuses more textures than can be drawn; `field` is for the message."""
-    textured = sum(material.texture is not None for material in geometry.materials)
-    if textured > MAX_TEXTURES:
-        raise InputError(
-            f"has {textured} materials with a texture, at most {MAX_TEXTURES} can be drawn",
-            file=scene.file,
-            field=field,
-            remedy="let parts share materials, or put several textures into one picture",
-        )
-
-
-def joined(parts: list[Geometry], /) -> Geometry:
-    """One geometry from several, with normals, texture coordinates and materials."""
-    parts = [part if part.normals is not None else flat_shaded(part) for part in parts]
-    points = merged(*parts)
-    normals = np.concatenate([part.normals for part in parts if part.normals is not None])
-    uvs = np.concatenate(
-        [np.zeros((len(p.positions), 2)) if p.uvs is None else p.uvs for p in parts]
-    )
-    ids: list[NDArray[np.int32]] = []
-    first = 0
-    for part in parts:
-        own = part.material_ids
-        own = np.zeros(len(part.triangles), np.int32) if own is None else own
-        ids.append((own + first).astype(np.int32))
-        first += len(part.materials)
-    materials = tuple(material for part in parts for material in part.materials)
-    return replace(
-        points, normals=normals, uvs=uvs, material_ids=np.concatenate(ids), materials=materials
-    )
-
-
-def flat_shaded(part: Geometry, /) -> Geometry:
-    """The same triangles with three corners of their own each, and their plane's normal there."""
-    corner = part.triangles.ravel()
-    return replace(
-        part,
-        positions=part.positions[corner],
-        normals=np.repeat(face_normals(part), 3, axis=0),
-        uvs=None if part.uvs is None else part.uvs[corner],
-        triangles=np.arange(len(corner), dtype=np.int32).reshape(-1, 3),
-    )
 
 
 def _read_normals(scene: Scene, view: View) -> Float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.quantities import Geometry, merged
+from andon.surface.movers import Mover
 from andon.surface.occluder import Occluder
 
 __all__ = ["EMPTY_GEOMETRY", "ObjectInfo", "ShadowBias", "SurfaceModel"]
@@ -69,7 +70,8 @@ class SurfaceModel:
     casters : what the virtual objects' shadows are cast by.
     bias : see `ShadowBias`.
     objects_table : the virtual objects in the order of their slots, which count up from 0: first
-        those of `objects`, in the order of its triangles and materials.
+        those of `objects`, in the order of its triangles and materials, then the `movers`.
+    movers : virtual objects that move.
     notes : what a reader of files wants said to whoever looks at the picture.
     """
 
@@ -83,12 +85,14 @@ class SurfaceModel:
     casters: Geometry = EMPTY_GEOMETRY
     bias: ShadowBias = field(default_factory=ShadowBias)
     objects_table: tuple[ObjectInfo, ...] = ()
+    movers: tuple[Mover, ...] = ()
     notes: tuple[str, ...] = ()
 
     @cached_property
     def shadow_casters(self) -> Geometry:
-        """All that casts shadows, real and virtual."""
-        return merged(self.occluder.geometry, self.casters)
+        """All that casts shadows, real and virtual; movers where they were last."""
+        moving = [mover.geometry for mover in self.movers if mover.casts_shadow]
+        return merged(self.occluder.geometry, self.casters, *moving)
 
     @cached_property
     def object_of_slot(self) -> NDArray[np.int32]:
@@ -96,13 +100,40 @@ class SurfaceModel:
         counts = [info.slots for info in self.objects_table]
         return np.repeat(np.arange(len(counts), dtype=np.int32), counts)
 
+    @property
+    def moving_table(self) -> tuple[ObjectInfo, ...]:
+        """The rows of `objects_table` that belong to `movers`."""
+        return self.objects_table[len(self.objects_table) - len(self.movers) :]
+
     @cached_property
-    def object_middles(self) -> NDArray[np.float64]:
+    def emitted_cd_m2(self) -> NDArray[np.float64]:
+        """(slots, 3) what the materials of virtual objects emit."""
+        drawn = [self.objects] if len(self.objects.triangles) else []
+        drawn += [mover.geometry for mover in self.movers]
+        emitted = [material.emissive_cd_m2 for part in drawn for material in part.materials]
+        return np.array(emitted, float).reshape(-1, 3)
+
+    @property
+    def has_objects(self) -> bool:
+        """There are virtual objects."""
+        return len(self.objects.triangles) > 0 or len(self.movers) > 0
+
+    def corners_of(self, index: int, movers: Sequence[Geometry] = (), /) -> NDArray[np.float64]:
+        """(triangles, 3, 3) metres: the object of row `index`, of which `movers` are the moving."""
+        first = len(self.objects_table) - len(self.movers)
+        if index >= first:
+            moved = movers[index - first]
+            return moved.positions[moved.triangles]
+        counts = [info.triangles for info in self.objects_table[: index + 1]]
+        own = slice(sum(counts[:-1]), sum(counts))
+        return self.objects.positions[self.objects.triangles[own]]
+
+    @cached_property
+    def still_middles(self) -> NDArray[np.float64]:
         """(n, 3) metres: the middles of the bounding boxes of the objects in `objects`."""
-        corners = self.objects.positions[self.objects.triangles]
-        ends = np.cumsum([info.triangles for info in self.objects_table])
-        parts = np.split(corners, ends[:-1]) if len(ends) else []
-        return np.array([middle_of(part) for part in parts], float).reshape(-1, 3)
+        count = len(self.objects_table) - len(self.movers)
+        middles = [middle_of(self.corners_of(index)) for index in range(count)]
+        return np.array(middles, float).reshape(-1, 3)
 
     @property
     def is_distant_only(self) -> bool:

@@ -5,7 +5,7 @@
 //!import andon/surface/plain.wgsl
 
 @group(0) @binding(0) var<uniform> view: ViewRecord;
-// Flags of the draw (valid, and object or not) in x.
+// Flags of the draw (valid, and object or not) in x; what is added to numbers of materials in y.
 @group(0) @binding(1) var<uniform> draw_flags: vec4u;
 // Diffuse reflectance of each material in xyz; texture layer in w, −1 for none.
 @group(0) @binding(2) var<storage, read> materials: array<vec4f>;
@@ -38,7 +38,7 @@ fn towards(normal: vec3f, sight: vec3f) -> u32 {
 ) -> Corner {
   let clip = clip_position(position);
   let look = materials[material];
-  let flags = draw_flags.x | (material << MATERIAL_SHIFT);
+  let flags = draw_flags.x | ((material + draw_flags.y) << MATERIAL_SHIFT);
   let sight = position - view.position;
   return Corner(clip, normal, uv, look, vec3u(towards(normal, sight), pack_reflectance(look.xyz), flags));
 }

@@ -26,17 +26,30 @@ __all__ = [
     "trace_body",
     "trace_rays",
     "with_bodies",
+    "with_movers",
 ]
 
 Float = NDArray[np.float64]
 
 
 def see(model: SurfaceModel, view: View, /) -> Surface:
-    """The surface of `view`: the real geometry, and virtual objects where they are nearer."""
+    """The surface of `view`: the real geometry, and virtual objects where they are nearer.
+
+    Of objects only those that stand still; see `with_movers`.
+    """
     real = _see_real(model, view)
     if len(model.objects.triangles) == 0:
         return real
     return nearest(real, trace(model.objects, view, is_object=True))
+
+
+def with_movers(surface: Surface, model: SurfaceModel, movers: Sequence[Geometry], /) -> Surface:
+    """The surface with the objects of `model` that move, where they are nearer."""
+    for info, geometry in zip(model.moving_table, movers, strict=True):
+        seen = trace(geometry, surface.view, is_object=True)
+        slots = np.where(seen.valid, seen.material_id + info.first_slot, -1)
+        surface = nearest(surface, replace(seen, material_id=slots.astype(np.int32)))
+    return surface
 
 
 def with_bodies(surface: Surface, bodies: Sequence[Body], /) -> Surface:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -32,9 +33,9 @@ from andon.quantities import Geometry, Material, Surface
 from andon.spaces import View
 from andon.surface import reference
 from andon.surface.body_mesh import BodyMesh
+from andon.surface.draws import Draw, storage_buffer
 from andon.surface.model import SurfaceModel
-from andon.surface.textures import TEXTURE_SIDE_PX
-from andon.surface.vertices import is_flat, vertex_arrays
+from andon.surface.mover_mesh import MoverMesh
 
 __all__ = ["GpuSurface", "SurfaceStage"]
 
@@ -94,25 +95,31 @@ class SurfaceStage:
     """Sees one model through one view, as often as the frame is drawn.
 
     A pinhole view is rasterised every time. Fisheye and latlong views, whose straight lines are
-    curved, are traced by Embree when the stage is made and uploaded.
+    curved, are traced by Embree: what stands still when the stage is made, what moves every time.
+    `bodies` and `movers` are those of the start: later ones have the same triangles.
     """
 
     def __init__(
-        self, gpu: Gpu, model: SurfaceModel, view: View, bodies: Sequence[Body] = ()
+        self,
+        gpu: Gpu,
+        model: SurfaceModel,
+        view: View,
+        bodies: Sequence[Body] = (),
+        movers: Sequence[Geometry] = (),
     ) -> None:
         self.gpu, self.model, self.view = gpu, model, view
         _check_bodies(bodies)
         self._has_bodies = len(bodies) > 0
         objects = model.objects
-        emitted = np.array([m.emissive_cd_m2 for m in objects.materials], float).reshape(-1, 3)
-        self.surface = GpuSurface(gpu, view, emitted, model)
+        self.surface = GpuSurface(gpu, view, model.emitted_cd_m2, model)
         self._on_host = view.projection != "pinhole"
         has_picture = view.name in model.depth or model.is_distant_only
-        self._draws: list[_Draw] = []
+        self._draws: list[Draw] = []
         self._bodies: list[BodyMesh] = []
+        self._movers: list[MoverMesh] = []
         self._background: Texture | None = None
         self._still: Surface | None = None
-        if self._on_host or (has_picture and len(objects.triangles) == 0 and not bodies):
+        if self._on_host or (has_picture and not model.has_objects and not bodies):
             self._still = reference.see(model, view)
             self.surface.texture.write(pack_surface(self._still))
             return
@@ -122,13 +129,20 @@ class SurfaceStage:
             self._background.write(pack_surface(real))
         self._make_pipelines()
         if not has_picture and len(model.real.triangles):
-            self._draws.append(_Draw(self, model.real, VALID))
+            self._draws.append(Draw(gpu, self.bind, model.real, VALID))
         if len(objects.triangles):
-            self._draws.append(_Draw(self, objects, VALID | OBJECT))
+            self._draws.append(Draw(gpu, self.bind, objects, VALID | OBJECT))
+        for info, geometry in zip(model.moving_table, movers, strict=True):
+            mesh, first = MoverMesh(gpu, geometry), info.first_slot
+            flags = VALID | OBJECT
+            draw = Draw(gpu, self.bind, geometry, flags, mesh=mesh, first_slot=first, bends=True)
+            self._draws.append(draw)
+            self._movers.append(mesh)
         for number, body in enumerate(bodies):
             mesh = BodyMesh(gpu, body, number)
             flags = VALID | OBJECT | ((number + 1) << BODY_SHIFT)
-            self._draws.append(_Draw(self, body.geometry, flags, mesh, body.reflectance))
+            look = replace(body.geometry, materials=(Material(reflectance=body.reflectance),))
+            self._draws.append(Draw(gpu, self.bind, look, flags, mesh=mesh))
             self._bodies.append(mesh)
         self.surface.bodies = tuple(self._bodies)
 
@@ -145,7 +159,9 @@ class SurfaceStage:
     def _make_pipelines(self) -> None:
         gpu, view, model = self.gpu, self.view, self.model
         variants = projection_variant(view)
-        if any(m.texture is not None for m in (*model.real.materials, *model.objects.materials)):
+        drawn = (model.real, model.objects, *(mover.geometry for mover in model.movers))
+        materials = chain.from_iterable(geometry.materials for geometry in drawn)
+        if any(material.texture is not None for material in materials):
             variants |= {PLAIN: TEXTURED}
         module = shader_module(gpu, SHADER, STRUCTS, variants)
         self._depth = make_texture(gpu, "depth32float", view.width, view.height)
@@ -160,7 +176,7 @@ class SurfaceStage:
         ]
         flags = self.surface.view_buffer
         empty = make_texture(gpu, "rgba16float", 1, 1, layers=1)
-        table = gpu.device.create_buffer(size=16, usage=_storage_usage())
+        table = storage_buffer(gpu, np.zeros((1, 4), np.float32))
         background = self._background or make_texture(gpu, "rgba32uint", 1, 1)
         layout = self.bind(flags, table, empty, background)
         self.pipelines = {
@@ -172,10 +188,15 @@ class SurfaceStage:
             self._fill = self._pipeline(layout, module, "fullscreen", "background", [], "always")
             self._fill_group = layout
 
-    def _see_on_host(self, still: Surface, bodies: Sequence[Body]) -> None:
-        """Curved projections: bodies are traced, and their light is a picture."""
-        seen = reference.with_bodies(still, bodies)
+    def _see_on_host(
+        self, still: Surface, bodies: Sequence[Body], movers: Sequence[Geometry]
+    ) -> None:
+        """Curved projections: what moves is traced, and the light of bodies is a picture."""
+        seen = reference.with_movers(still, self.model, movers)
+        seen = reference.with_bodies(seen, bodies)
         self.surface.texture.write(pack_surface(seen))
+        if not bodies:
+            return
         if self.surface.body_light is None:
             size = (self.view.width, self.view.height)
             self.surface.body_light = make_texture(self.gpu, "rgba32float", *size)
@@ -225,15 +246,22 @@ class SurfaceStage:
             },
         )
 
-    def encode(self, encoder: Any, bodies: Sequence[Body] = ()) -> GpuSurface:
+    def encode(
+        self,
+        encoder: Any,
+        bodies: Sequence[Body] = (),
+        movers: Sequence[Geometry] = (),
+    ) -> GpuSurface:
         """Records the drawing of the G-buffer; returns where it will be.
 
-        `bodies` are those of the start, where they are now.
+        `bodies` and `movers` are those of the start, where they are now.
         """
         if self._still is not None:
-            if bodies:
-                self._see_on_host(self._still, bodies)
+            if bodies or movers:
+                self._see_on_host(self._still, bodies, movers)
             return self.surface
+        for moving, geometry in zip(self._movers, movers, strict=True):
+            moving.move(geometry)
         for mesh, body in zip(self._bodies, bodies, strict=True):
             mesh.move(body)
         render = encoder.begin_render_pass(
@@ -260,64 +288,3 @@ class SurfaceStage:
 def _check_bodies(bodies: Sequence[Body]) -> None:
     if len(bodies) > MAX_BODIES:
         raise InputError(f"{len(bodies)} luminous bodies, at most {MAX_BODIES}", field="lamp")
-
-
-class _Draw:
-    """Buffers of one geometry."""
-
-    def __init__(
-        self,
-        stage: SurfaceStage,
-        geometry: Geometry,
-        flags: int,
-        body: BodyMesh | None = None,
-        reflectance: tuple[float, float, float] | None = None,
-    ) -> None:
-        import wgpu
-
-        gpu = stage.gpu
-        self.entry_point = "flat_surface" if is_flat(geometry) else "surface"
-        device, usage = gpu.device, wgpu.BufferUsage
-        if body is None:
-            vertices, indices = vertex_arrays(geometry)
-            self.count = indices.size
-            self.vertices = device.create_buffer_with_data(data=vertices, usage=usage.VERTEX)
-            self.indices = device.create_buffer_with_data(data=indices, usage=usage.INDEX)
-        else:
-            self.count, self.vertices, self.indices = body.count, body.vertices, body.indices
-        if reflectance is not None:
-            geometry = replace(geometry, materials=(Material(reflectance=reflectance),))
-        flag_buffer = uniform_buffer(gpu, 16, "draw flags")
-        write_buffer(gpu, flag_buffer, np.array([flags, 0, 0, 0], np.uint32))
-        table, textures = _material_table(gpu, geometry)
-        materials = device.create_buffer_with_data(data=table, usage=usage.STORAGE)
-        nothing = make_texture(gpu, "rgba32uint", 1, 1)
-        self.group = stage.bind(flag_buffer, materials, textures, nothing)
-
-    def encode(self, render: Any) -> None:
-        render.set_bind_group(0, self.group.group)
-        render.set_vertex_buffer(0, self.vertices)
-        render.set_index_buffer(self.indices, "uint32")
-        render.draw_indexed(self.count)
-
-
-def _storage_usage() -> int:
-    import wgpu
-
-    return wgpu.BufferUsage.STORAGE
-
-
-def _material_table(gpu: Gpu, geometry: Geometry) -> tuple[NDArray[np.float32], Texture]:
-    textured = [m for m in geometry.materials if m.texture is not None]
-    side = TEXTURE_SIDE_PX if textured else 1
-    # Half floats hold linear light to 0.05 %; 8 bits would band in the darks.
-    stack = make_texture(gpu, "rgba16float", side, side, layers=max(1, len(textured)))
-    table = np.full((len(geometry.materials), 4), -1.0, np.float32)
-    layer = 0
-    for row, material in zip(table, geometry.materials, strict=True):
-        row[:3] = material.reflectance
-        if material.texture is not None and geometry.uvs is not None:
-            stack.write(np.dstack([material.texture, np.ones((side, side))]), layer)
-            row[3] = layer
-            layer += 1
-    return table, stack

@@ -5,8 +5,9 @@ from __future__ import annotations
 from andon.errors import InputError
 from andon.quantities import Geometry
 from andon.scene import Scene
-from andon.surface.load import joined, mesh_geometry, object_geometry
+from andon.surface.load import mesh_geometry
 from andon.surface.model import EMPTY_GEOMETRY
+from andon.surface.objects import joined, object_geometry
 
 __all__ = ["still_geometry", "still_objects"]
 

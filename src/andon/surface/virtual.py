@@ -13,8 +13,10 @@ from dataclasses import replace
 from andon.errors import InputError
 from andon.quantities import MAX_OBJECT_MATERIALS, Geometry, merged
 from andon.scene import Scene
-from andon.surface.load import check_textures, joined, load_surface, mesh_geometry
+from andon.surface.load import load_surface, mesh_geometry
+from andon.surface.meshes import check_textures
 from andon.surface.model import ObjectInfo, SurfaceModel
+from andon.surface.objects import joined
 
 __all__ = ["SURFACE", "virtual_surface", "with_mesh_as_object"]
 

@@ -50,9 +50,12 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        harmonics,
         lampshade,
         penumbra,
         photometry,
+        probe_capture,
+        probe_light,
         probe_space,
         relight,
         synthetic,
@@ -66,5 +69,8 @@ def rows() -> tuple[Row, ...]:
         *synthetic.ROWS,
         *lampshade.ROWS,
         *photometry.ROWS,
+        *probe_capture.ROWS,
+        *harmonics.ROWS,
+        *probe_light.ROWS,
         *probe_space.ROWS,
     )

@@ -160,5 +160,8 @@ def _edges(cells: Cells) -> NDArray[np.uint32]:
     """(e, 2) rising pairs of probes, each once, in rising order."""
     pairs = [cells.corners[:, list(pair)] for pair in CELL_EDGES]
     pairs += [cells.facets[:, list(pair)] for pair in FACET_EDGES]
-    edges = np.unique(np.sort(np.concatenate(pairs), axis=1), axis=0)
-    return edges[edges[:, 0] < edges[:, 1]].astype(np.uint32)
+    ends = np.sort(np.concatenate(pairs), axis=1).astype(np.int64)
+    ends = ends[ends[:, 0] < ends[:, 1]]  # pieces of a line have an edge of no length
+    count = int(ends.max(initial=0)) + 1
+    keys = np.unique(ends[:, 0] * count + ends[:, 1])
+    return np.stack([keys // count, keys % count], axis=1).astype(np.uint32)

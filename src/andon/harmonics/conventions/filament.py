@@ -51,7 +51,7 @@ def cmgen_text(coefficients: NDArray[Any], /) -> str:
     """The text that cmgen writes as ``sh.txt``, pre-scaled, of luminance (k, 3)."""
     nine = to_filament(coefficients)
     return "".join(
-        f"({r:18.15f}, {g:18.15f}, {b:18.15f}); // {name}, irradiance, pre-scaled base\n"
+        f"({r:18.15g}, {g:18.15g}, {b:18.15g}); // {name}, irradiance, pre-scaled base\n"
         for name, (r, g, b) in zip(_NAMES, nine.tolist(), strict=True)
     )
 

@@ -4,7 +4,8 @@
 group          is
 =============  ===========================================================================
 ``real``       the real surface: the photograph's own light already has its shadows
-``objects``    virtual objects
+``objects``    virtual objects that stand still
+``movers``     virtual objects that move
 a body's name  the shell of a luminous body, or the area of a lamp: its own light passes it
 =============  ===========================================================================
 """
@@ -21,9 +22,9 @@ from numpy.typing import NDArray
 from andon.quantities import Geometry, merged
 from andon.rays import RayScene
 
-__all__ = ["OBJECTS", "REAL", "Casters", "ShadowRays"]
+__all__ = ["MOVERS", "OBJECTS", "REAL", "Casters", "ShadowRays"]
 
-REAL, OBJECTS = "real", "objects"
+REAL, OBJECTS, MOVERS = "real", "objects", "movers"
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class Casters:
 
     @cached_property
     def _places(self) -> dict[str, int]:
-        # The real surface and the objects stand still; bodies have few vertices.
+        # The real surface and the objects stand still; what moves has few vertices.
         moving = [(name, part) for name, part in self.groups if name not in (REAL, OBJECTS)]
         return {name: hash(part.positions.tobytes()) for name, part in moving}
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from typing import Any
 
 from andon.gpu.bindings import bind_group
@@ -53,6 +53,7 @@ class DirectStage:
         *,
         bias_real_m: float,
         bias_object_m: float,
+        captured: Set[str] = frozenset(),
     ) -> None:
         self.gpu = gpu
         self.bias = {"bias_real_m": bias_real_m, "bias_object_m": bias_object_m}
@@ -71,6 +72,7 @@ class DirectStage:
             map_size=self.maps.size,
             soft_map_size=self.soft.size,
             triangles=len(self.casters.triangles),
+            captured=captured,
         )
         self.variants = {
             SUM: code,

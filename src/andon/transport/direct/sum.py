@@ -7,7 +7,7 @@ a driver copies every call into the shader, and eight copies of a soft shadow to
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 
 from andon.lamps import AnyAreaLamp, Lamp
 from andon.transport.direct.records import form_of
@@ -27,6 +27,7 @@ def sum_of_lamps(
     map_size: int,
     soft_map_size: int,
     triangles: int,
+    captured: Set[str] = frozenset(),
 ) -> str:
     """The module that stands in for sum.wgsl.
 
@@ -37,6 +38,7 @@ def sum_of_lamps(
     edges : lamp name → first and count of the edges of a polygon or mesh lamp.
     tables : lamp name → first value, rows and columns of a luminaire's distribution.
     triangles : how many cast shadows.
+    captured : names of sky and hemisphere lamps whose light probes hold.
     """
     lines = [
         f"const MAP_SIZE: f32 = {float(map_size)};",
@@ -51,7 +53,13 @@ def sum_of_lamps(
     areas = [(n, lamp) for n, lamp in enumerate(lamps) if isinstance(lamp, AnyAreaLamp)]
     if areas:
         lines += _areas(areas, bodies, samples, edges)
-    return "\n".join([*lines, "  return total;", "}"])
+    lines += ["  return total;", "}", "fn captured_lux(normal: vec3f) -> vec3f {"]
+    terms = [
+        _term(number, lamp, layers, tables)
+        for number, lamp in enumerate(lamps)
+        if lamp.name in captured
+    ]
+    return "\n".join([*lines, f"  return {' + '.join(['vec3f(0.0)', *terms])};", "}"])
 
 
 def _term(

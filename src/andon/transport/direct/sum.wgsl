@@ -9,3 +9,8 @@ const TRIANGLES: i32 = 1;
 fn illuminance(position: vec3f, normal: vec3f, bias: f32, body: u32) -> vec3f {
   return vec3f(0.0);
 }
+
+// Of those whose light probes have captured as such.
+fn captured_lux(normal: vec3f) -> vec3f {
+  return vec3f(0.0);
+}

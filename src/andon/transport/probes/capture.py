@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.lamps import HemisphereLamp, Lamp, SkyLamp
+from andon.lamps import HemisphereLamp, SkyLamp
 from andon.responses import srgb_decode, srgb_encode
 from andon.transport.probes.photograph import Photograph
 
@@ -146,7 +146,7 @@ def captured(
     return Capture(*parts, seen.distance_m, share, int(np.count_nonzero(bad)))
 
 
-def sky_luminance(sky: Sequence[Lamp], directions: Float, /) -> Float:
+def sky_luminance(sky: Sequence[SkyLamp | HemisphereLamp], directions: Float, /) -> Float:
     """Luminance (n, 3) in cd/m² of the sky in unit `directions` (n, 3).
 
     A dome of luminance E/π above the horizon gives E to a surface that faces the zenith; of a
@@ -154,11 +154,12 @@ def sky_luminance(sky: Sequence[Lamp], directions: Float, /) -> Float:
     """
     total = np.zeros_like(directions)
     for lamp in sky:
-        above = (directions @ lamp.up > 0)[:, None]
+        above: NDArray[np.bool_] = (directions @ lamp.up > 0)[:, None]
         if isinstance(lamp, SkyLamp):
-            total += np.where(above, lamp.illuminance_lux / np.pi, 0.0)
-        elif isinstance(lamp, HemisphereLamp):
-            total += np.where(above, lamp.sky_illuminance_lux, lamp.ground_illuminance_lux) / np.pi
+            upper, lower = lamp.illuminance_lux, np.zeros(3)
+        else:
+            upper, lower = lamp.sky_illuminance_lux, lamp.ground_illuminance_lux
+        total += np.where(above, upper, lower) / np.pi
     return total
 
 
@@ -168,6 +169,6 @@ def quantised(luminance_cd_m2: Float, white_cd_m2: float, /) -> tuple[Float, int
     This is what the capture paper's browser stores; here its codes are linearised again.
     """
     share = np.asarray(luminance_cd_m2, np.float64) / white_cd_m2
-    codes = np.rint(srgb_encode(np.clip(share, 0, 1)) * 255)
+    codes: Float = np.rint(srgb_encode(np.clip(share, 0, 1)) * 255).astype(np.float64)
     clipped = int(np.count_nonzero((share > 1).any(axis=-1)))
-    return srgb_decode(codes / 255) * white_cd_m2, clipped
+    return np.asarray(srgb_decode(codes / 255) * white_cd_m2, np.float64), clipped

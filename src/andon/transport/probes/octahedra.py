@@ -27,7 +27,7 @@ def square_of(directions: Float, /) -> Float:
     size = np.abs(directions).sum(axis=-1, keepdims=True)
     flat = directions[..., :2] / size
     folded = (1 - np.abs(flat[..., ::-1])) * np.where(flat >= 0, 1.0, -1.0)
-    return np.where(directions[..., 2:] >= 0, flat, folded)
+    return np.asarray(np.where(directions[..., 2:] >= 0, flat, folded), np.float64)
 
 
 def directions_of(places: Float, /) -> Float:

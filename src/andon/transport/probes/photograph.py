@@ -56,8 +56,8 @@ class Photograph:
     """The pictures of one view or two, looked up by points of the world."""
 
     def __init__(self, pictures: Sequence[Picture]) -> None:
-        self._pictures = tuple(pictures)
-        known = [p.light[np.isfinite(p.depth)].astype(np.float64) for p in self._pictures]
+        self.pictures = tuple(pictures)
+        known = [p.light[np.isfinite(p.depth)].astype(np.float64) for p in self.pictures]
         every = np.concatenate([np.zeros((0, 6)), *known])
         self.mean: Float = every.mean(axis=0) if len(every) else np.zeros(6)
 
@@ -65,7 +65,7 @@ class Photograph:
         """What is shown at `points` (n, 3) of the real surface, metres, world."""
         found = np.broadcast_to(self.mean, (len(points), 6)).copy()
         seen = np.zeros(len(points), bool)
-        for picture in self._pictures:
+        for picture in self.pictures:
             left = np.flatnonzero(~seen)
             shown, light = _look_up(picture, points[left])
             found[left[shown]] = light

@@ -97,15 +97,17 @@ def _listed(numbers: NDArray[np.integer]) -> NDArray[np.float64]:
 
 def _cells(space: ProbeSpace) -> NDArray[np.float64]:
     rows = np.concatenate([space.inverses, space.origins[:, :, None]], axis=2)
-    tables = np.stack([space.neighbours, space.corners], axis=1)
+    tables = np.stack([space.neighbours, space.corners], axis=1).astype(np.float64)
     return np.concatenate([rows, tables], axis=1).reshape(-1, 4)
 
 
 def _facets(space: ProbeSpace) -> NDArray[np.float64]:
-    corners = np.concatenate([space.positions[space.facets], space.facets[..., None]], axis=2)
+    probes = space.facets[..., None].astype(np.float64)
+    corners = np.concatenate([space.positions[space.facets], probes], axis=2)
     firsts, _ = space.facet_rings
     extents = np.where(space.facet_zones >= 0, space.zone_extents[space.facet_zones], 1.0)
-    last = np.stack([firsts[:-1], np.diff(firsts), space.facet_cells, extents], axis=1)
+    lists = (firsts[:-1], np.diff(firsts), space.facet_cells)
+    last = np.stack([*(column.astype(np.float64) for column in lists), extents], axis=1)
     return np.concatenate([corners, last[:, None]], axis=1).reshape(-1, 4)
 
 

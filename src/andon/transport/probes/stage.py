@@ -53,10 +53,14 @@ class ProbeBuffers:
     """
 
     def __init__(
-        self, gpu: Gpu, light: ProbeLight, lookup: Lookup = "pixel", slots: Sequence[int] = ()
+        self,
+        gpu: Gpu,
+        light: ProbeLight,
+        lookup: Lookup = "pixel",
+        slots: NDArray[np.int32] | None = None,
     ) -> None:
         self.gpu, self.light, self.lookup = gpu, light, lookup
-        self.slots: NDArray[np.int64] = np.asarray(slots, np.int64)
+        self.slots = np.zeros(0, np.int32) if slots is None else slots
         packed = pack_space(light.space, light.walls)
         rows = len(self.slots) if lookup == "object" else len(light.coefficients)
         texels = pack_light(np.zeros((rows, *light.coefficients.shape[1:])))

@@ -5,18 +5,17 @@ and the mean square of the distances in each texel; if the point is farther than
 of what is at least as far is at most σ²/(σ² + (d − mean)²) (Chebyshev's inequality, one-sided:
 Majercik et al. 2019, after the variance shadow maps of Donnelly & Lauritzen 2006).
 
-============================ ==================== ==================================================
-what                         here                 why
-============================ ==================== ==================================================
-share below which nothing    ½ (`CUT`)            the bound is loose: behind a wall that is seen at a
-is left                                           slant some σ²/d² is always left, and lit probes that
-                                                  keep 1 % outweigh the one on the dark side
-                                                  (Lauritzen & Salvi's light-bleeding reduction)
-power                        3                    Majercik et al.'s sharpening
-least share                  0                    their implementation keeps 5 %: a leak of 0.5 %
-lift along the normal        5 % of the distance  a texel of 16² is 0.2 rad wide; walls seen at a slant
-                                                  would hide their own points
-============================ ==================== ==================================================
+=========================== ==================== ==================================================
+what                        here                 why
+=========================== ==================== ==================================================
+share that counts for none  ½ (`CUT`)            the bound is loose: lit probes behind a wall that
+                                                 is seen at a slant keep 1 %, and outweigh the one
+                                                 on the dark side (Lauritzen 2007 cuts so, too)
+power                       3                    Majercik et al.'s sharpening
+least share                 0                    their implementation keeps 5 %: it leaks
+lift along the normal       a tenth of the       a texel of 16² is 0.2 rad wide; walls seen at a
+                            distance             slant would hide their own points
+=========================== ==================== ==================================================
 
 `andon verify probes.leaks` has the figures.
 """
@@ -44,7 +43,7 @@ _SAMPLES = 4
 # See the table above.
 CUT = 0.5
 SHARPNESS = 3
-LIFT = 0.05
+LIFT = 0.1
 
 # Relative: what float32 leaves of a mean square less the square of a mean is 1e-7 of it.
 LEAST_SPREAD = 1e-3

@@ -8,7 +8,7 @@
 @group(0) @binding(4) var probe_distances: texture_2d<f32>;
 
 const PROBE_CUT: f32 = 0.5;
-const PROBE_LIFT: f32 = 0.05;
+const PROBE_LIFT: f32 = 0.1;
 const PROBE_LEAST_SPREAD: f32 = 1e-3;
 const PROBE_ENOUGH: f32 = 0.05;
 const PROBE_LEAST: f32 = 1e-5;

@@ -50,7 +50,8 @@ def read_gltf_nodes(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> tup
     Raises `InputError` for a file that is missing, damaged, too large, or whose nodes form a cycle
     or lie at no finite place.
     """
-    placed = place_nodes(open_document(path, limits))
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused below
+        placed = place_nodes(open_document(path, limits))
     at = {node.number: index for index, node in enumerate(placed)}
     parents = [-1] * len(placed)
     for index, node in enumerate(placed):

@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from andon.transport.probes.export.filament import filament_text
 from andon.transport.probes.export.image_based import image_based_glb
 from andon.transport.probes.export.model import (
     ExportUnit,
@@ -27,9 +28,9 @@ from andon.transport.probes.export.model import (
     chosen_probe,
     probe_lights,
 )
-from andon.transport.probes.export.polynomials import filament_text, polynomial, unity_json
 from andon.transport.probes.export.table import csv_text
 from andon.transport.probes.export.three import three_json
+from andon.transport.probes.export.unity import unity_json
 
 __all__ = [
     "EXPORTS",
@@ -40,7 +41,6 @@ __all__ = [
     "csv_text",
     "filament_text",
     "image_based_glb",
-    "polynomial",
     "probe_lights",
     "three_json",
     "unity_json",

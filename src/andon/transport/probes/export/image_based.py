@@ -12,8 +12,8 @@ hold the rest (the extension reads four channels as RGBD). What rings below zero
 of the extension wants each image flipped about its vertical axis: it is then what one sees who
 looks along the axis of the face.
 
-The extension names no sign of the basis. Its own sample and the papers that it refers to have no
-Condon–Shortley sign; neither have we.
+The extension names no sign of its basis (see `andon.harmonics.conventions.gltf`). Here there is
+none, as in the papers that it refers to.
 
 Source: Khronos Group, "EXT_lights_image_based", multi-vendor extension of glTF 2.0.
 """
@@ -30,7 +30,8 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.volumes.glb import GlbArrays
-from andon.harmonics import basis, convolved, cube_directions, order_of, to_order
+from andon.harmonics import basis, cube_directions, order_of
+from andon.harmonics.conventions import to_gltf
 from andon.responses import srgb_encode
 from andon.transport.probes.export.model import ExportUnit, ProbeLight
 
@@ -95,11 +96,10 @@ def _light(
             numbers[-1].append(len(images))
             view = arrays.blob(_png(face / intensity))
             images.append({"bufferView": view, "mimeType": "image/png"})
-    irradiance = convolved(to_order(coefficients, 2)) / intensity
     return {
         "name": light.name,
         "intensity": intensity,
-        "irradianceCoefficients": irradiance.tolist(),
+        "irradianceCoefficients": to_gltf(coefficients / intensity).tolist(),
         "specularImageSize": SIZES[0],
         "specularImages": numbers,
     }

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import Any
 from uuid import NAMESPACE_OID, uuid5
 
-from andon.harmonics import to_order
+from andon.harmonics.conventions import to_three
 from andon.transport.probes.export.model import ExportUnit, ProbeLight
 
 __all__ = ["three_json"]
@@ -45,7 +45,7 @@ def _probe(number: int, light: ProbeLight, unit: ExportUnit) -> dict[str, Any]:
         "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1],
         "color": 0xFFFFFF,
         "intensity": 1,
-        "sh": (unit.scale * to_order(light.coefficients, 2)).ravel().tolist(),
+        "sh": to_three(unit.scale * light.coefficients).tolist(),
     }
 
 

@@ -66,10 +66,19 @@ def from_vertices(placement: Placement, walls: Walls, file: str) -> Generated:
     """Off the vertices of the surface, along their normals, no nearer than the least distance.
 
     A vertex's normal is the mean of its triangles' weighted by their areas, corners at one place
-    counting as one. Places in the file's order; those inside or behind another wall are dropped.
+    counting as one. Places in the file's order; those inside or behind another wall are dropped,
+    and those outside of the placement's box, if it states one, do not count at all.
     """
     geometry = walls.geometry
-    low, high = box_of(placement, geometry, file)
+    if len(geometry.triangles) == 0:
+        raise InputError(
+            "kind 'vertices' needs a surface",
+            file=file,
+            field="probes.placement.kind",
+            remedy="give a [surface], or another kind",
+        )
+    low = -np.inf if placement.low is None else np.array(placement.low)
+    high = np.inf if placement.high is None else np.array(placement.high)
     corners, normals = _welded(geometry)
     length = np.linalg.norm(normals, axis=1)
     # Sheets with two sides of triangles have no outside: the sum is nothing but rounding.
@@ -133,8 +142,8 @@ def _welded(geometry: Geometry) -> tuple[Float, Float]:
 def lattice(placement: Placement, walls: Walls, file: str) -> Generated:
     """Corners of equal boxes that fill the placement's box, less its margin.
 
-    A place inside a wall is moved to the nearest free one that rays find within half a step;
-    where there is none it is left out.
+    A place inside a wall is moved to the nearest free one that rays find in the box within half a
+    step; where there is none it is left out. Where no place at all is free, none is moved.
     """
     low, high = box_of(placement, walls.geometry, file)
     counts = _counts(placement, high - low - 2 * placement.offset_m)
@@ -147,7 +156,10 @@ def lattice(placement: Placement, walls: Walls, file: str) -> Generated:
     names = tuple(f"lattice-{i}-{j}-{k}" for i, j, k in numbers)
     steps = [float(axis[1] - axis[0]) for axis in axes if len(axis) > 1]
     reach = MOVE_SHARE * min(steps, default=float("inf"))
-    places, kept, moved = _out_of_walls(points, walls, reach, placement.offset_m)
+    # Out of a box without thickness a place may move, or it could not move at all.
+    flat = high <= low
+    box = np.where(flat, -np.inf, low), np.where(flat, np.inf, high)
+    places, kept, moved = _out_of_walls(points, walls, box, reach, placement.offset_m)
     tally = Tally(moved=moved, dropped_in_walls=int(np.count_nonzero(~kept)))
     return Generated(
         places[kept], tuple(n for n, keep in zip(names, kept, strict=True) if keep), tally
@@ -170,17 +182,16 @@ def _steps(low: float, high: float, margin: float, count: int) -> Float:
 
 
 def _out_of_walls(
-    points: Float, walls: Walls, reach_m: float, margin_m: float
+    points: Float, walls: Walls, box: tuple[Float, Float], reach_m: float, margin_m: float
 ) -> tuple[Float, NDArray[np.bool_], int]:
     """The points with those in walls moved out, which of them count, and how many moved."""
-    sight = walls.sight(points)
-    kept = ~sight.buried
-    stuck = np.flatnonzero(sight.buried & np.isfinite(sight.way_out).all(axis=1))
-    way = sight.way_out[stuck]
-    length = np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-12)
-    targets = points[stuck] + way * (1 + margin_m / length)
-    near = np.linalg.norm(targets - points[stuck], axis=1) <= reach_m
-    stuck, targets = stuck[near], targets[near]
+    kept = walls.is_free(points)
+    if not kept.any():  # a surface that is inside out: the way out would lead out of the room
+        return points, kept, 0
+    stuck = np.flatnonzero(~kept)
+    ways = walls.ways_out(points[stuck], *box, margin_m)
+    near = np.linalg.norm(ways, axis=1) <= reach_m  # not so where there is none: NaN
+    stuck, targets = stuck[near], points[stuck[near]] + ways[near]
     free = walls.is_free(targets)
     places = points.copy()
     places[stuck[free]] = targets[free]

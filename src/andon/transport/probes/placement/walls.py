@@ -44,6 +44,9 @@ def _all_around(count: int) -> Float:
     return np.column_stack([radius * np.cos(turn), height, radius * np.sin(turn)])
 
 
+AROUND = _all_around(DIRECTIONS)
+
+
 @dataclass(frozen=True, eq=False)
 class Sight:
     """What points see all around.
@@ -53,13 +56,11 @@ class Sight:
     backs : (n,) share of the directions in which the first surface shows its back, 0…1.
     one_sided_backs : (n,) the same of surfaces that have one side only.
     nearest_m : (n,) metres to the nearest surface that a ray met; inf: none did.
-    way_out : (n, 3) to the nearest surface whose back is seen, metres; NaN: no back is seen.
     """
 
     backs: Float
     one_sided_backs: Float
     nearest_m: Float
-    way_out: Float
 
     @property
     def buried(self) -> NDArray[np.bool_]:
@@ -81,26 +82,34 @@ class Walls:
 
     def sight(self, points: Float, /) -> Sight:
         """What `points` (n, 3) see."""
-        around = _all_around(DIRECTIONS)
+        distance, backs, one_sided = self._around(points)
+        return Sight(backs.mean(axis=1), (backs & one_sided).mean(axis=1), distance.min(axis=1))
+
+    def _around(self, points: Float) -> tuple[Float, NDArray[np.bool_], NDArray[np.bool_]]:
+        """(n, d) metres to the first surface in each direction; it shows its back; has one side."""
         count = len(points)
-        directions = np.tile(around, (count, 1))
+        directions = np.tile(AROUND, (count, 1))
         hits = self.rays.first_hits(np.repeat(points, DIRECTIONS, axis=0), directions)
         hit = hits.triangle >= 0
-        facing = np.full(len(directions), -1.0)
-        facing[hit] = np.einsum("ij,ij->i", directions[hit], self._normals[hits.triangle[hit]])
-        backs = (hit & (facing > 0)).reshape(count, DIRECTIONS)
-        one_sided = np.zeros(len(directions), np.bool_)
+        backs, one_sided = np.zeros_like(hit), np.zeros_like(hit)
+        normals = self._normals[hits.triangle[hit]]
+        backs[hit] = np.einsum("ij,ij->i", directions[hit], normals) > 0
         one_sided[hit] = self._one_sided[hits.triangle[hit]]
-        one_sided_backs = backs & one_sided.reshape(count, DIRECTIONS)
-        distance = hits.distance.reshape(count, DIRECTIONS)
-        to_back = np.where(backs, distance, np.inf)
-        nearest = to_back.argmin(axis=1)
-        reach = to_back[np.arange(count), nearest]
-        with np.errstate(invalid="ignore"):
-            way_out = np.where(np.isfinite(reach), reach, np.nan)[:, None] * around[nearest]
-        return Sight(
-            backs.mean(axis=1), one_sided_backs.mean(axis=1), distance.min(axis=1), way_out
-        )
+        shape = count, DIRECTIONS
+        return hits.distance.reshape(shape), backs.reshape(shape), one_sided.reshape(shape)
+
+    def ways_out(self, points: Float, low: Float, high: Float, margin_m: float, /) -> Float:
+        """(n, 3) from `points` (n, 3) through the nearest back to `margin_m` beyond it, metres.
+
+        Of the places that lie in the box from `low` to `high` (3,); NaN where none does.
+        """
+        distance, backs, _ = self._around(points)
+        length = np.where(backs, distance + margin_m, np.inf)
+        ends = points[:, None] + np.where(np.isfinite(length), length, 0)[..., None] * AROUND
+        length[~((ends >= low) & (ends <= high)).all(axis=2)] = np.inf
+        nearest = length.argmin(axis=1)
+        reach = length[np.arange(len(points)), nearest]
+        return np.where(np.isfinite(reach), reach, np.nan)[:, None] * AROUND[nearest]
 
     def is_free(self, points: Float, /) -> NDArray[np.bool_]:
         """(n,) `points` (n, 3) lie outside of walls."""

@@ -1,0 +1,336 @@
+"""The order of a bake: first light, bounces, the volume."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.bake.digest import digest
+from andon.bake.journal import Journal, Result
+from andon.bake.places import far_m, zones_of
+from andon.bake.report import BakeReport
+from andon.bake.runner import Progress, Runner
+from andon.bake.task import PARTS, Look, Pictures, bounced, encoded, first_light
+from andon.engines.cubes import CubeSetting, cube_engine, cube_setting
+from andon.engines.photographless import white_cd_m2
+from andon.engines.prepared import prepare
+from andon.errors import InputError
+from andon.files.volumes import Cells, Distances, ProbeVolume, Zone
+from andon.harmonics import deringed
+from andon.scene import Scene
+from andon.scene.probes import Probes
+from andon.surface.objects import joined
+from andon.transport.probes.placement import Placed, Walls
+
+if TYPE_CHECKING:
+    from andon.transport.probes.light import ProbeLight
+
+__all__ = ["DEFAULT_STATE", "Baked", "bake_probes"]
+
+Float = NDArray[np.float64]
+
+DEFAULT_STATE = "default"
+# Of what journals hold: results of another version of this package are computed again.
+VERSION = 1
+# Pixels along a face of the pictures of a bounce, at most.
+BOUNCE_SIZE = 32
+
+
+@dataclass(frozen=True, eq=False)
+class Baked:
+    """A volume of one state, and what is to be said of it."""
+
+    volume: ProbeVolume
+    report: BakeReport
+
+
+def bake_probes(
+    scene: Scene,
+    placed: Placed,
+    /,
+    *,
+    engine: str = "auto",
+    progress: Progress | None = None,
+    folder: Path | None = None,
+) -> Baked:
+    """Captures the light at every placed probe.
+
+    Parameters
+    ----------
+    scene : has a [probes] table, whose settings are used.
+    placed : from `place_probes`; at least one probe.
+    engine : ``auto`` takes the GPU where there is an adapter, else the reference.
+    progress : called after each probe.
+    folder : where finished results are kept, and looked for; whoever asked removes it. None:
+        nowhere.
+
+    Raises
+    ------
+    InputError
+        for panoramas that are none, files at fault, zones without a probe.
+    MachineError
+        for probes that fail three times (the others are kept), for ``gpu`` without an adapter, and
+        where SciPy is missing.
+    """
+    return _Bake(scene, placed, engine, progress, Journal(folder)).run()
+
+
+class _Bake:
+    def __init__(
+        self,
+        scene: Scene,
+        placed: Placed,
+        engine: str,
+        progress: Progress | None,
+        journal: Journal,
+    ) -> None:
+        self.scene, self.placed = scene, placed
+        self.journal = journal
+        self.runner = Runner(journal, placed.names, progress)
+        self.probes = _table(scene)
+        self.zones = zones_of(self.probes, placed, scene.file)
+        self.cells = _cells(placed, self.zones)
+        self.setting = _setting(scene, placed)
+        self.look = self._looking(self.probes.cube_size_px, engine)
+        near = min(BOUNCE_SIZE, self.probes.cube_size_px)
+        self.small = self.look if self.look is None else self._looking(near, self.look.engine.name)
+        self.far_m = far_m(placed, self.cells, self.setting.geometry if self.setting else ())
+        self.base = self._base()
+        self.own = [index for index, p in enumerate(placed.panoramas) if p is None]
+        self.passes = _passes(self.setting, self.probes.bounces)
+        self.recoded = self.probes.encoding == "srgb8" and bool(self.own)
+        later = len(self.passes) + self.recoded
+        self.runner.total = placed.count + later * len(self.own)
+
+    def run(self) -> Baked:
+        """First light, bounces, 8 bits if they are asked for, the volume."""
+        first = self._first()
+        ambient, emitted, reflected = (
+            np.stack([result[part] for result in first]) for part in PARTS
+        )
+        distances = self._distances(first)
+        # What lights the first pass is what emits; where nothing does, what lamps light.
+        light = emitted if 1 in self.passes else emitted + reflected
+        lit_by: ProbeLight | None = None
+        for bounce in self.passes:
+            lit_by = self._probe_light(light, distances)
+            light = emitted + reflected + self._bounce(bounce, lit_by)
+        if not self.passes:
+            light = emitted + reflected
+        coefficients = ambient + light
+        recoded: list[Result] = []
+        if self.recoded:
+            recoded = self._recode(lit_by)
+            coefficients[self.own] = [result["all"] for result in recoded]
+        return Baked(self._volume(coefficients, distances), self._report(first, recoded))
+
+    def _first(self) -> list[Result]:
+        probes = self.probes
+        pictures = Pictures(
+            self.scene, self.placed, self.look, probes.order, probes.bounces > 0, self.far_m
+        )
+        return self.runner.each(
+            "first light",
+            range(self.placed.count),
+            self._first_key,
+            lambda index: first_light(pictures, index),
+        )
+
+    def _looking(self, size: int, engine: str) -> Look | None:
+        if self.setting is None:
+            return None
+        probes = self.probes
+        taker = cube_engine(self.setting, size, engine)
+        return Look(taker, size, self.setting, probes.order, probes.solid_angle)
+
+    def _base(self) -> str:
+        """The name of all that every probe's light depends on."""
+        probes, setting = self.probes, self.setting
+        settings = (probes.cube_size_px, probes.solid_angle, probes.order, probes.bounces > 0)
+        if setting is None or self.look is None:
+            return digest(VERSION, settings)
+        lighting, casters = setting.lighting, setting.prepared.casters(setting.moment)
+        photograph = () if lighting.photograph is None else lighting.photograph.pictures
+        return digest(
+            (VERSION, settings, self.look.engine.name, self.look.engine.adapter, self.far_m),
+            (setting.geometry, casters.groups, setting.prepared.surface.bias),
+            (setting.lamps, setting.moment.bodies, lighting.ambient_lux, lighting.sky),
+            photograph,
+        )
+
+    def _first_key(self, index: int) -> str:
+        placed = self.placed
+        panorama = placed.panoramas[index]
+        contents = None
+        if panorama is not None:
+            path = self.scene.path(panorama.reference, panorama.field)
+            contents = digest(panorama, np.frombuffer(_bytes_of(path), np.uint8))
+        return digest(self.base, placed.capture_positions[index], placed.ranges_m[index], contents)
+
+    def _bounce(self, bounce: int, light: ProbeLight) -> Float:
+        """(n, k, 3) what is reflected of `light` around every probe; nothing around panoramas."""
+        assert self.small is not None
+        small = self.small
+        name = digest("bounce", self.base, light.coefficients, self._places())
+        results = self.runner.each(
+            f"bounce {bounce}",
+            self.own,
+            lambda index: digest(name, self._first_key(index)),
+            lambda index: bounced(small, self.placed, light, index),
+        )
+        total = np.zeros_like(light.coefficients)
+        total[self.own] = [result["reflected"] for result in results]
+        return total
+
+    def _recode(self, light: ProbeLight | None) -> list[Result]:
+        assert self.look is not None
+        look, white, lit = self.look, self._white(), self.probes.bounces > 0
+        coefficients = None if light is None else light.coefficients
+        name = digest("srgb8", self.base, coefficients, self._places(), white)
+        return self.runner.each(
+            "8 bits",
+            self.own,
+            lambda index: digest(name, self._first_key(index)),
+            lambda index: encoded(look, self.placed, light, index, lit=lit, white_cd_m2=white),
+        )
+
+    def _places(self) -> str:
+        """The name of what lookups between the probes depend on."""
+        return digest(
+            self.placed.positions, self.placed.capture_positions, self.cells, self.zones,
+            self.probes.visibility,
+        )  # fmt: skip
+
+    def _white(self) -> float:
+        assert self.setting is not None
+        frames, prepared = self.setting.prepared.frames, self.setting.prepared
+        if frames:
+            return next(iter(frames.values())).luminance_per_unit
+        return white_cd_m2(self.scene, prepared.ambient, prepared.at(0.0).lamps)
+
+    def _distances(self, first: Sequence[Result]) -> Distances | None:
+        if not self.probes.visibility or self.setting is None:
+            return None
+        mean, square = (
+            np.stack([result[key] for result in first]).astype(np.float32)
+            for key in ("mean_m", "mean_square_m2")
+        )
+        return Distances(mean, square, self.far_m)
+
+    def _probe_light(self, light: Float, distances: Distances | None) -> ProbeLight:
+        from andon.transport.probes.hidden import walls_of
+        from andon.transport.probes.light import ProbeLight
+        from andon.transport.probes.space import ProbeSpace
+
+        volume = self._volume(light, distances)
+        # Where light is taken away a mean may be negative, and there is nothing to be smoothed.
+        can_ring = self.probes.dering and bool((light[:, 0] >= 0).all())
+        smooth = deringed(light) if can_ring else light
+        return ProbeLight(ProbeSpace(volume), smooth, walls_of(volume, self.cells))
+
+    def _volume(self, coefficients: Float, distances: Distances | None) -> ProbeVolume:
+        from andon import __version__
+
+        placed, probes = self.placed, self.probes
+        notes = {
+            "generator": f"Andon {__version__}",
+            "scene": Path(self.scene.file).name,
+            "cube_size_px": str(probes.cube_size_px),
+            "encoding": probes.encoding,
+            "solid_angle": probes.solid_angle,
+            "bounces": str(probes.bounces),
+        }
+        return ProbeVolume(
+            positions=placed.positions,
+            capture_positions=placed.capture_positions,
+            names=placed.names,
+            roles=placed.roles,
+            ranges_m=placed.ranges_m,
+            states={probes.state or DEFAULT_STATE: coefficients},
+            zones=self.zones,
+            cells=self.cells,
+            distances=distances,
+            photometry=self.scene.photometry,
+            notes=notes,
+        )
+
+    def _report(self, first: Sequence[Result], recoded: Sequence[Result]) -> BakeReport:
+        names = self.placed.names
+        shares = np.array([float(result["clipped_share"]) for result in first])
+        if recoded:
+            shares[self.own] = [float(result["clipped_share"]) for result in recoded]
+        taker = None if self.look is None else self.look.engine
+        return BakeReport(
+            engine="none" if taker is None else taker.name,
+            adapter="panoramas alone" if taker is None else taker.adapter,
+            probes=self.placed.count,
+            bounces=self.probes.bounces,
+            cells=len(self.cells.corners),
+            captured=self.runner.computed,
+            kept=self.journal.found,
+            damaged=self.journal.damaged,
+            seconds=self.runner.seconds,
+            in_walls=self._in_walls(),
+            not_finite=int(sum(float(result["not_finite"]) for result in first)),
+            clipped=tuple(names[index] for index in np.flatnonzero(shares > 0).tolist()),
+            clipped_share=float(shares.max(initial=0.0)),
+            negative=int(sum(float(result["negative"]) for result in first)),
+            unphotographed_share=float(
+                np.mean([float(result["unphotographed"]) for result in first])
+            ),
+        )
+
+    def _in_walls(self) -> tuple[str, ...]:
+        """Probes that mostly see backs of surfaces; panoramas see none."""
+        if self.setting is None or not self.setting.geometry or not self.own:
+            return ()
+        walls = Walls(joined(list(self.setting.geometry)))
+        buried = walls.sight(self.placed.capture_positions[self.own]).buried
+        names = self.placed.names
+        return tuple(names[n] for n, inside in zip(self.own, buried, strict=True) if inside)
+
+
+def _table(scene: Scene) -> Probes:
+    if scene.probes is None:
+        raise InputError("needs a [probes] table", file=scene.file, remedy="add probes.volume")
+    return scene.probes
+
+
+def _passes(setting: CubeSetting | None, bounces: int) -> range:
+    """Bounces for which probes light surfaces: from 1 where something emits, else from 2."""
+    if setting is None or not (setting.emits or setting.lamps):
+        return range(0)
+    return range(1 if setting.emits else 2, bounces + 1)
+
+
+def _cells(placed: Placed, zones: tuple[Zone, ...]) -> Cells:
+    from andon.transport.probes.cells import build_cells
+
+    return build_cells(placed.positions, zones)
+
+
+def _setting(scene: Scene, placed: Placed) -> CubeSetting | None:
+    """What is seen; None where there is nothing, and all probes are panoramas."""
+    nothing = scene.surface is None and not scene.object
+    if nothing and all(panorama is not None for panorama in placed.panoramas):
+        return None
+    if scene.has_photograph and scene.ambient is not None and scene.ambient.probes:
+        raise InputError(
+            "is the light that a bake is to find",
+            file=scene.file,
+            field="ambient.probes",
+            remedy="bake a scene without [capture] source, with a surface.mesh and the lamps of "
+            "the photograph as [[lamp]]",
+        )
+    return cube_setting(scene, prepare(scene, drawn=False))
+
+
+def _bytes_of(path: Path) -> bytes:
+    from andon.files.paths import open_bounded
+
+    return open_bounded(path)

@@ -1,0 +1,44 @@
+"""What is to be said of a bake."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["BakeReport"]
+
+
+@dataclass(frozen=True)
+class BakeReport:
+    """Counts of a bake.
+
+    Attributes
+    ----------
+    engine, adapter : what captured.
+    probes, bounces, cells : how many.
+    captured, kept : results that were computed, and that an earlier bake had left.
+    damaged : kept results that were not whole and were computed again.
+    seconds : of the captures alone, 0 where all were kept.
+    in_walls : names of probes that mostly see backs of surfaces.
+    not_finite : texels whose light was no number.
+    clipped : names of probes with light that 8 bits cut off (of panoramas: a sun, a lamp), and
+        the largest share of the sphere that it is.
+    negative : negative values of panoramas, counted as 0.
+    unphotographed_share : of what is seen of a photographed surface, the mean share that no
+        photograph shows.
+    """
+
+    engine: str
+    adapter: str
+    probes: int
+    bounces: int
+    cells: int
+    captured: int
+    kept: int
+    damaged: int
+    seconds: float
+    in_walls: tuple[str, ...] = ()
+    not_finite: int = 0
+    clipped: tuple[str, ...] = ()
+    clipped_share: float = 0.0
+    negative: int = 0
+    unphotographed_share: float = 0.0

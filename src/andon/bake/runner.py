@@ -1,0 +1,92 @@
+"""Runs the tasks of a bake: what is kept is not done again, what fails is tried again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from time import perf_counter
+from typing import NoReturn
+
+from andon.bake.journal import Journal, Result
+from andon.errors import InputError, MachineError
+
+__all__ = ["ATTEMPTS", "Progress", "Runner"]
+
+# (done, of, what is being done)
+Progress = Callable[[int, int, str], None]
+
+# A task is tried this many times before it is reported.
+ATTEMPTS = 3
+# Failed tasks that a message names.
+SHOWN = 3
+
+
+class Runner:
+    """Tasks of probes, one after the other.
+
+    Attributes
+    ----------
+    total : tasks of the whole bake, for `progress`.
+    computed, seconds : what was not kept from before, and the time that took.
+    """
+
+    def __init__(self, journal: Journal, names: Sequence[str], progress: Progress | None) -> None:
+        self.journal, self.names = journal, names
+        self.total = self.computed = self._done = 0
+        self.seconds = 0.0
+        self._progress = progress
+
+    def each(
+        self,
+        what: str,
+        indices: Sequence[int],
+        key: Callable[[int], str],
+        work: Callable[[int], Result],
+    ) -> list[Result]:
+        """The results of `work` for the probes `indices`, each kept by its `key`.
+
+        Raises `MachineError` after all others are done for those that failed three times.
+        """
+        results: list[Result] = []
+        failed: list[str] = []
+        for index in indices:
+            name = key(index)
+            result: Result | None = self.journal.get(name)
+            if result is None:
+                result, fault = self._tried(index, work)
+                if result is None:
+                    failed.append(f"{self.names[index]} ({fault})")
+                else:
+                    self.journal.put(name, result)
+            if result is not None:
+                results.append(result)
+            self._done += 1
+            if self._progress is not None:
+                self._progress(self._done, self.total, what)
+        if failed:
+            self._refuse(failed, len(indices))
+        return results
+
+    def _tried(self, index: int, work: Callable[[int], Result]) -> tuple[Result | None, str]:
+        fault = ""
+        for _ in range(ATTEMPTS):
+            start = perf_counter()
+            try:
+                result = work(index)
+            except InputError:  # trying again would not make a file better
+                raise
+            except Exception as error:
+                fault = f"{type(error).__name__}: {error}"
+                continue
+            self.computed += 1
+            self.seconds += perf_counter() - start
+            return result, ""
+        return None, fault
+
+    def _refuse(self, failed: list[str], count: int) -> NoReturn:
+        names = ", ".join(failed[:SHOWN]) + (", …" if len(failed) > SHOWN else "")
+        folder = self.journal.folder
+        kept = "" if folder is None else f"the others are kept in {folder}: "
+        raise MachineError(
+            f"{len(failed)} of {count} probes failed {ATTEMPTS} times: {names}",
+            remedy=f"{kept}bake again, or leave these probes out",
+        )

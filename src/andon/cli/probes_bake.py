@@ -1,0 +1,128 @@
+"""``andon probes bake``: captures the light at the probes of a scene."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from andon.cli.console import note
+from andon.cli.options import EngineOption
+
+if TYPE_CHECKING:
+    from andon.bake import Written
+
+__all__ = ["bake"]
+
+# Names that a line lists before it goes on with "…".
+SHOWN_NAMES = 5
+
+
+def bake(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML) with a [probes] table.")],
+    engine: EngineOption = "auto",
+    state: Annotated[
+        str | None,
+        typer.Option(help="Name of the state that is baked; default: the scene's probes.state."),
+    ] = None,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Forget what an interrupted bake has left.")
+    ] = False,
+) -> None:
+    """Capture the light at the probes of a scene, and write the volume that it names.
+
+    A bake that was stopped goes on where it was. A second state (night) of the same probes is
+    added to the volume.
+
+    Examples:
+
+        andon probes bake room.toml
+
+        andon probes bake room-at-night.toml --state night
+    """
+    from andon.bake import bake_file
+    from andon.scene import load_scene
+
+    loaded = load_scene(scene)
+    if state is not None and loaded.probes is not None:
+        probes = loaded.probes.model_copy(update={"state": state})
+        loaded = loaded.model_copy(update={"probes": probes})
+    with _Bar() as bar:
+        written = bake_file(loaded, engine=engine, fresh=fresh, progress=bar.show)
+    for warning in (*written.warnings, *_notes(written)):
+        note(warning)
+    _print(written)
+    print(written.path)
+    note(f"look at it: andon probes show {written.path}")
+
+
+class _Bar:
+    """A progress bar on stderr, with the time left."""
+
+    def __enter__(self) -> _Bar:
+        from rich.console import Console
+        from rich.progress import Progress
+
+        self._bar = Progress(console=Console(stderr=True), transient=True)
+        self._bar.start()
+        self._task = self._bar.add_task("placing", total=None)
+        return self
+
+    def show(self, done: int, of: int, what: str) -> None:
+        self._bar.update(self._task, completed=done, total=of, description=what)
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.stop()
+
+
+def _notes(written: Written) -> list[str]:
+    report = written.report
+    notes: list[str] = []
+    if written.replaced:
+        notes.append("the volume that was there had other probes and is replaced")
+    if report.in_walls:
+        notes.append(
+            f"{len(report.in_walls)} of {report.probes} probes see mostly backs of surfaces, as "
+            f"inside a wall: {_listed(report.in_walls)}"
+        )
+    if report.damaged:
+        notes.append(f"{report.damaged} kept results were not whole and are captured again")
+    if report.not_finite:
+        notes.append(f"{report.not_finite} texels had light that is no number; they count as dark")
+    if report.clipped:
+        notes.append(
+            f"light is cut off at the end of the range in {len(report.clipped)} probes, up to "
+            f"{report.clipped_share:.2%} of the sphere: {_listed(report.clipped)}; a sun there is "
+            "too dark (HDR panoramas keep it, or a [[lamp]] replaces it)"
+        )
+    if report.negative:
+        notes.append(f"{report.negative} values of panoramas are negative and count as 0")
+    if report.unphotographed_share > 0:
+        notes.append(
+            f"{report.unphotographed_share:.1%} of the photographed surface that probes see is in "
+            "no photograph, and has the mean of what is"
+        )
+    return notes
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(names[:SHOWN_NAMES]) + (", …" if len(names) > SHOWN_NAMES else "")
+
+
+def _print(written: Written) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    report = written.report
+    table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_row("engine", f"{report.engine} · {report.adapter}")
+    table.add_row("probes", f"{report.probes} in {report.cells} cells")
+    table.add_row("bounces", str(report.bounces))
+    table.add_row("states", ", ".join(written.states))
+    seconds = f", {report.seconds / report.captured:.3g} s each" if report.captured else ""
+    kept = f", {report.kept} kept from before" if report.kept else ""
+    table.add_row("captures", f"{report.captured}{seconds}{kept}")
+    table.add_row("inside walls", str(len(report.in_walls)))
+    table.add_row("file", f"{written.path.stat().st_size / 1024:.1f} KiB")
+    Console(stderr=True, highlight=False, markup=False).print(table)

@@ -1,0 +1,212 @@
+"""Light probes of a scene: its volume read, its light chosen, and E0 by them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.composite.model import Ambient
+from andon.errors import InputError
+from andon.files.volumes import ProbeVolume, read_volume
+from andon.harmonics import deringed, irradiance
+from andon.quantities import Surface
+from andon.scene import Scene
+from andon.scene.probes import Probes
+from andon.spaces import View
+from andon.surface import reference as surface
+from andon.surface.model import SurfaceModel
+from andon.transport.probes.cells import build_cells
+from andon.transport.probes.hidden import walls_of
+from andon.transport.probes.light import ProbeLight, probe_coefficients, probe_illuminance
+from andon.transport.probes.space import ProbeSpace
+from andon.transport.probes.states import state_coefficients
+
+__all__ = [
+    "NO_LAMPS",
+    "PROBES",
+    "SceneProbes",
+    "ambient_of_probes",
+    "lampless_pixels",
+    "light_of_volume",
+    "lit_pixels",
+    "probes_of",
+    "taking",
+]
+
+Float = NDArray[np.float64]
+
+# Share of the mean below which E0 of a pixel is not taken: E0 divides what lamps add, and in a
+# corner that no probe lights it would be 0.
+LEAST_SHARE = 1e-3
+
+# Of taking.wgsl.
+NO_LAMPS, PROBES = 1, 2
+
+
+@dataclass(frozen=True, eq=False)
+class SceneProbes:
+    """Light of probes, ready for both engines.
+
+    Attributes
+    ----------
+    light : the volume's, in the state that is seen.
+    lookup : where light is looked up: at each pixel, or once for each object.
+    captured : names of sky and hemisphere lamps whose light is in the probes.
+    dimming : (3,) share of their light that is left; that of E0, where there is one.
+    """
+
+    light: ProbeLight
+    lookup: Literal["pixel", "object"] = "pixel"
+    captured: frozenset[str] = frozenset()
+    dimming: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+    @property
+    def dimmed(self) -> ProbeLight:
+        """The light that is left."""
+        return replace(self.light, coefficients=self.light.coefficients * np.array(self.dimming))
+
+    def standing_lux(self, seen: Surface, model: SurfaceModel, middles: Float) -> Float | None:
+        """(H, W, 3) lux that objects lit by probes stand in, dimmed; NaN elsewhere.
+
+        `middles` (objects, 3) are theirs, metres. None: there is no such pixel.
+        """
+        lit = lit_pixels(seen, model)
+        if not lit.any():
+            return None
+        lux, light = np.full((*seen.view.shape, 3), np.nan), self.dimmed
+        normals = seen.normal[lit]
+        if self.lookup == "pixel":
+            lux[lit] = probe_illuminance(light, seen.position[lit], normals)
+        else:
+            owners = model.object_of_slot[seen.material_id[lit]]
+            rows = probe_coefficients(light, middles)
+            for owner in np.unique(owners):
+                own = owners == owner
+                at = np.flatnonzero(lit.ravel())[own]
+                lux.reshape(-1, 3)[at] = np.maximum(irradiance(rows[owner], normals[own]), 0)
+        return lux
+
+
+def lit_pixels(seen: Surface, model: SurfaceModel, /) -> NDArray[np.bool_]:
+    """(H, W): a virtual object that probes light; luminous bodies are none."""
+    return _pixels_of(seen, model, [info.lit_by_probes for info in model.objects_table])
+
+
+def lampless_pixels(seen: Surface, model: SurfaceModel, /) -> NDArray[np.bool_]:
+    """(H, W): a virtual object that lamps do not light."""
+    return _pixels_of(seen, model, [not info.lit_by_lamps for info in model.objects_table])
+
+
+def _pixels_of(seen: Surface, model: SurfaceModel, chosen: list[bool]) -> NDArray[np.bool_]:
+    own = seen.is_object & seen.valid
+    if seen.body_id is not None:
+        own = own & (seen.body_id < 0)
+    result = np.zeros(own.shape, bool)
+    if any(chosen):
+        result[own] = np.array(chosen)[model.object_of_slot[seen.material_id[own]]]
+    return result
+
+
+def taking(model: SurfaceModel, *, has_probes: bool) -> NDArray[np.uint8]:
+    """(slots,) what light the materials of virtual objects take, as taking.wgsl has it."""
+    rows = [
+        NO_LAMPS * (not info.lit_by_lamps) + PROBES * (has_probes and info.lit_by_probes)
+        for info in model.objects_table
+    ]
+    return np.array(rows, np.uint8)[model.object_of_slot]
+
+
+def probes_of(scene: Scene, /) -> tuple[SceneProbes | None, tuple[str, ...]]:
+    """The probes that a frame of `scene` needs, or None; and what is to be said of them."""
+    table = scene.probes
+    wanted = any(entry.lit_by_probes for entry in scene.object) or not scene.has_photograph
+    wanted |= scene.ambient is not None and scene.ambient.probes
+    if table is None or not wanted:
+        return None, ()
+    path = scene.path(table.volume, "probes.volume")
+    if not path.exists():
+        raise InputError(
+            f"there is no file {table.volume} yet",
+            file=scene.file,
+            field="probes.volume",
+            remedy=f"andon probes bake {scene.file} writes it; or leave [probes] out",
+        )
+    volume = read_volume(path)
+    try:
+        light = light_of_volume(volume, table)
+    except InputError as error:
+        field = error.field or "volume"
+        field = field if field.startswith("probes.") else f"probes.{field}"
+        raise InputError(error.rule, file=scene.file, field=field, remedy=error.remedy) from error
+    notes: tuple[str, ...] = ()
+    if table.visibility and light.walls is None:
+        notes = (f"{path.name} holds no distances: walls hide no probes; bake it with visibility",)
+    captured = frozenset(
+        lamp.name for lamp in scene.lamp if lamp.kind in ("sky", "hemisphere") and lamp.in_probes
+    )
+    share = (1.0, 1.0, 1.0) if scene.ambient is None else _triple(scene.ambient.dimming)
+    return SceneProbes(light, table.lookup, captured, share), notes
+
+
+def _triple(values: object) -> tuple[float, float, float]:
+    share: Float = np.broadcast_to(np.asarray(values, float), 3)
+    return float(share[0]), float(share[1]), float(share[2])
+
+
+def light_of_volume(volume: ProbeVolume, table: Probes, /) -> ProbeLight:
+    """A volume as the table wants it seen: state, zones, smoothing, walls."""
+    coefficients = state_coefficients(volume, table.state, table.blend_state, table.blend)
+    if table.dering:
+        coefficients = deringed(coefficients)
+    cells = volume.cells or build_cells(volume.positions, volume.zones)
+    space = ProbeSpace(replace(volume, cells=cells), table.zones)
+    return ProbeLight(space, coefficients, walls_of(volume, cells) if table.visibility else None)
+
+
+def ambient_of_probes(
+    scene: Scene, probes: SceneProbes | None, model: SurfaceModel, views: Mapping[str, View]
+) -> tuple[Ambient, tuple[str, ...]]:
+    """E0 of each pixel of the real surface from the probes; and what is to be said of it.
+
+    Holes take the mean. Raises `InputError` without probes, for two eyes, and in the dark.
+    """
+    table = scene.ambient
+    assert table is not None
+    problem = None
+    if probes is None:
+        problem = "needs [probes] with a volume"
+    elif len(views) > 1:
+        problem = "is one picture of E0 for two eyes"
+    elif model.is_distant_only:
+        problem = "needs positions, but a normals-only surface has none"
+    if problem is not None or probes is None:
+        raise InputError(
+            problem or "", file=scene.file, field="ambient.probes", remedy="state illuminance_lux"
+        )
+    real = replace(model, objects=SurfaceModel().objects, objects_table=())
+    seen = surface.see(real, next(iter(views.values())))
+    lux = np.full((*seen.view.shape, 3), np.nan)
+    lux[seen.valid] = probe_illuminance(
+        probes.light, seen.position[seen.valid], seen.normal[seen.valid]
+    )
+    mean = np.nanmean(lux, axis=(0, 1)) if seen.valid.any() else np.zeros(3)
+    if not (mean > 0).all():
+        raise InputError(
+            f"the probes light the surface with {mean.round(3)} lx: E0 must be > 0 in each channel",
+            file=scene.file,
+            field="ambient.probes",
+            remedy="bake with the lamps of the photograph, or state illuminance_lux",
+        )
+    dark = (lux < LEAST_SHARE * mean).any(axis=-1)
+    lux = np.maximum(np.where(np.isnan(lux), mean, lux), LEAST_SHARE * mean)
+    notes: tuple[str, ...] = ()
+    if dark.any():
+        notes = (
+            f"E0 of {np.count_nonzero(dark)} pixels is below {LEAST_SHARE:.1%} of the mean by the "
+            "probes, and was raised to that",
+        )
+    return Ambient(lux, _triple(table.dimming), table.dimming_mode), notes

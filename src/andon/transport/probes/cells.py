@@ -210,7 +210,7 @@ def _check(at: Float, found: Int) -> None:
     unused = np.setdiff1d(np.arange(len(at)), found)
     if len(unused):
         raise Tangle(f"{len(unused)} probes are in no cell")
-    factorial = (1, 1, 2, 6)[at.shape[1]]
+    factorial = 2 if at.shape[1] == 2 else 6
     whole = float(spatial().ConvexHull(at).volume)
     if abs(volume.sum() / factorial - whole) > VOLUME * whole:
         raise Tangle("the cells do not fill the hull")

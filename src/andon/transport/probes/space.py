@@ -96,7 +96,7 @@ class ProbeSpace:
             )
         self.origins = np.ascontiguousarray(at[:, 3])
         edges = at[:, :3] - at[:, 3:]
-        self.inverses = np.linalg.inv(edges.transpose(0, 2, 1))
+        self.inverses = np.linalg.inv(edges.transpose(0, 2, 1)).astype(np.float64)
 
     def _compile_facets(self) -> None:
         a, b, c = (self.positions[self.facets[:, i]] for i in range(3))

@@ -104,9 +104,7 @@ def _queries(volume: ProbeVolume, random: np.random.Generator) -> list[dict[str,
     """What is expected at points in, on and outside the cells, and at the probes."""
     space, light = ProbeSpace(volume), volume.states["default"]
     points = _points(space, random)
-    normals = random.normal(size=points.shape)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    normals = np.round(normals, 6)
+    normals: Float = random.normal(size=points.shape)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     mix = space.locate(points, engine="numpy")
     mixed = space.mixed(mix, light)
@@ -115,7 +113,7 @@ def _queries(volume: ProbeVolume, random: np.random.Generator) -> list[dict[str,
             "point": point.tolist(),
             "inside": bool(cell >= 0),
             "normal": normal.tolist(),
-            "coefficients": np.round(coefficients, DECIMALS).tolist(),
+            "coefficients": np.asarray(coefficients, np.float64).round(DECIMALS).tolist(),
             "irradiance": np.round(irradiance(coefficients, normal), DECIMALS).tolist(),
         }
         for point, cell, normal, coefficients in zip(points, mix.cells, normals, mixed, strict=True)

@@ -124,7 +124,7 @@ def _subject(file: Path) -> _Subject:
         return _Subject(read_volume(file))
     if file.suffix.lower() != ".toml":
         raise InputError("must be a probe volume (.glb) or a scene (.toml)", file=file)
-    from andon.cli.probes_place import scene_geometry
+    from andon.bake.to_file import scene_geometry
     from andon.scene import load_scene
 
     scene = load_scene(file)

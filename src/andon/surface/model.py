@@ -27,7 +27,8 @@ class ShadowBias:
     ----------
     real_m : on the real surface: what decimation and the noise of a depth image leave between
         surface and occluder. Shadows thinner than this, at contacts, are lost.
-    object_m : on virtual objects, whose occluder is the object itself: float32 rounding only.
+    object_m : on virtual objects, whose occluder is the object itself: float32 rounding, and of
+        smooth ones what their normals and their triangles differ by within a texel.
     """
 
     real_m: float = 1e-3

@@ -1,8 +1,5 @@
 """Bakes of photographed scenes: what light they hold, and how frames use it."""
 
-import numpy as np
-import pytest
-
 from andon.bake import bake_file
 from andon.bake.to_file import placed_in, scene_geometry
 from worlds import ball, scene, write_glb

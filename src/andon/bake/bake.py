@@ -43,7 +43,13 @@ BOUNCE_SIZE = 32
 
 @dataclass(frozen=True, eq=False)
 class Baked:
-    """A volume of one state, and what is to be said of it."""
+    """What a bake gives.
+
+    Attributes
+    ----------
+    volume : of one state.
+    report : what is to be said of it.
+    """
 
     volume: ProbeVolume
     report: BakeReport

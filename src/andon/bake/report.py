@@ -20,8 +20,8 @@ class BakeReport:
     seconds : of the captures alone, 0 where all were kept.
     in_walls : names of probes that mostly see backs of surfaces.
     not_finite : texels whose light was no number.
-    clipped : names of probes with light that 8 bits cut off (of panoramas: a sun, a lamp), and
-        the largest share of the sphere that it is.
+    clipped : names of probes with light that 8 bits cut off (of panoramas: a sun, a lamp).
+    clipped_share : the largest share of a probe's sphere that it is, 0…1.
     negative : negative values of panoramas, counted as 0.
     unphotographed_share : of what is seen of a photographed surface, the mean share that no
         photograph shows.

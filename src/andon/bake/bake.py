@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from andon.bake.digest import digest
 from andon.bake.journal import Journal, Result
-from andon.bake.places import far_m, zones_of
+from andon.bake.places import far_m
 from andon.bake.report import BakeReport
 from andon.bake.runner import Progress, Runner
 from andon.bake.task import PARTS, Look, Pictures, bounced, encoded, first_light
@@ -25,7 +25,7 @@ from andon.harmonics import deringed
 from andon.scene import Scene
 from andon.scene.probes import Probes
 from andon.surface.objects import joined
-from andon.transport.probes.placement import Placed, Walls
+from andon.transport.probes.placement import Placed, Walls, zones_of
 
 if TYPE_CHECKING:
     from andon.transport.probes.light import ProbeLight
@@ -93,7 +93,7 @@ class _Bake:
         self.journal = journal
         self.runner = Runner(journal, placed.names, progress)
         self.probes = _table(scene)
-        self.zones = zones_of(self.probes, placed, scene.file)
+        self.zones = zones_of(scene, placed.positions)
         self.cells = _cells(placed, self.zones)
         self.setting = _setting(scene, placed)
         self.look = self._looking(self.probes.cube_size_px, engine)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.volumes.model import Zone
+from andon.files.volumes.rounded import in_single
 from andon.scene import Scene
 
 __all__ = ["zones_of"]
@@ -29,7 +30,9 @@ def zones_of(scene: Scene, positions: Float, /) -> tuple[Zone, ...]:
     names = tuple(dict.fromkeys(table.name for table in tables))
     numbers = np.array([names.index(table.name) for table in tables])
     boxes = np.array([(table.low, table.high) for table in tables])
-    beyond = np.maximum(boxes[:, 0] - positions[:, None], positions[:, None] - boxes[:, 1])
+    # Probes lie where float32 has them: one on the side of a box is judged by that side's float32.
+    low, high = in_single(boxes[:, 0]), in_single(boxes[:, 1])
+    beyond = np.maximum(low - positions[:, None], positions[:, None] - high)
     away = np.linalg.norm(np.maximum(beyond, 0), axis=2)  # (n, b)
     belongs = away <= away.min(axis=1, keepdims=True)
     found: list[Zone] = []

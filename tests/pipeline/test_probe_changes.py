@@ -141,9 +141,9 @@ VIEW = View("pinhole", 100, 80, 50.0, 50.0, 49.5, 39.5, world_from_camera=np.eye
 
 def card(x, z=5.0, normals=None):
     """A square of 10 × 10 pixels, whose left edge stands at x pixels beside the middle."""
-    corners = np.array([[0, 0, z], [1, 0, z], [1, 1, z], [0, 1, z]]) + [x / 10, 0, 0]
     # One vertex of the file is in no triangle, and behind the camera.
-    positions = np.concatenate([corners, [[0, 0, -9.0]]])
+    positions = np.array([[0, 0, z], [1, 0, z], [1, 1, z], [0, 1, z], [0, 0, -9.0]])
+    positions[:, 0] += x / 10
     return Geometry(positions, np.array([[0, 1, 2], [0, 2, 3]], np.int32), normals=normals)
 
 

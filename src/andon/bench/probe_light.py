@@ -34,7 +34,7 @@ def _against_numpy(lookup: Literal["pixel", "object"], visibility: bool) -> Duel
     buffers = ProbeBuffers(gpu, probes.dimmed, lookup, model.object_of_slot)
     seen = stage.surface
     picture = ProbePicture(buffers, view, seen.texture.view, seen.view_buffer)
-    buffers.move(model.object_middles)
+    buffers.move(model.still_middles)
 
     def finish(encoder: Any) -> None:
         gpu.device.queue.submit([encoder.finish()])
@@ -51,7 +51,7 @@ def _against_numpy(lookup: Literal["pixel", "object"], visibility: bool) -> Duel
     surface = replace(seen.read(), is_object=np.ones(view.shape, bool))
 
     def peer() -> Any:
-        return probes.standing_lux(surface, model, model.object_middles)
+        return probes.standing_lux(surface, model, model.still_middles)
 
     ours()
     expected = np.asarray(peer(), np.float64)
@@ -60,12 +60,11 @@ def _against_numpy(lookup: Literal["pixel", "object"], visibility: bool) -> Duel
     return Duel(ours, peer, same, 0.999, gpu.adapter_name, peer_repeats=3)
 
 
-_LOOKUPS: tuple[tuple[Literal["pixel", "object"], bool], ...] = (
+_SETTINGS: tuple[tuple[Literal["pixel", "object"], bool], ...] = (
     ("pixel", True),
     ("pixel", False),
     ("object", False),
 )
-
 ROWS: tuple[BenchRow, ...] = tuple(
     BenchRow(
         f"probes.light.{lookup}.{'walls' if visibility else 'open'}.numpy",
@@ -74,5 +73,5 @@ ROWS: tuple[BenchRow, ...] = tuple(
         WIDTH * HEIGHT,
         partial(_against_numpy, lookup, visibility),
     )
-    for lookup, visibility in _LOOKUPS
+    for lookup, visibility in _SETTINGS
 )

@@ -129,7 +129,7 @@ def stretch(dimensions: int = 3, /) -> Float:
     """A (d, d) with AᵀA = 1 + εQ: Delaunay cells of A·p are those of `simplices` at its first
     attempt, but for what only the noise decides."""
     form = np.eye(dimensions) + ATTEMPTS[0][0] * QUADRATIC[:dimensions, :dimensions]
-    return np.linalg.cholesky(form).T.astype(np.float64)
+    return np.asarray(np.linalg.cholesky(form).T, np.float64)
 
 
 def volumes(points: Float, corners: Int, /) -> Float:

@@ -1,8 +1,8 @@
 """Light of probes on the GPU: a picture of it, drawn where virtual objects are.
 
 A pass of its own, unlike direct light: a software rasteriser pays for both sides of a branch in
-every pixel, and a pass can be kept to the rectangles of the objects, and its picture from frame to
-frame: camera and probes stand still, so that only what moves changes it. A frame without such objects
+every pixel, and a pass can be kept to the rectangles of the objects. Its picture is kept, too:
+camera and probes stand still, so that only what moves changes it. A frame without such objects
 has no pass, and its shaders nothing of this.
 """
 

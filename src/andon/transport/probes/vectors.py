@@ -104,8 +104,8 @@ def _queries(volume: ProbeVolume, random: np.random.Generator) -> list[dict[str,
     """What is expected at points in, on and outside the cells, and at the probes."""
     space, light = ProbeSpace(volume), volume.states["default"]
     points = _points(space, random)
-    normals: Float = random.normal(size=points.shape)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    drawn: Float = random.normal(size=points.shape)
+    normals = _unit(np.round(_unit(drawn), 6))
     mix = space.locate(points, engine="numpy")
     mixed = space.mixed(mix, light)
     return [
@@ -118,6 +118,12 @@ def _queries(volume: ProbeVolume, random: np.random.Generator) -> list[dict[str,
         }
         for point, cell, normal, coefficients in zip(points, mix.cells, normals, mixed, strict=True)
     ]
+
+
+def _unit(vectors: Float) -> Float:
+    """Vectors (q, 3) at length 1."""
+    length: Float = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / length
 
 
 def _points(space: ProbeSpace, random: np.random.Generator) -> Float:

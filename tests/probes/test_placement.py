@@ -145,7 +145,10 @@ def test_lattice_probes_leave_walls_or_are_left_out():
     assert outside >= 0
     assert np.linalg.norm(moved - [-0.3, 1, 0]) <= 0.45
     assert place_probes(scene(place=hand(moved.tolist())), PILLAR).tally.in_walls == ()
-    assert "of the lattice, 1 probe moved out of walls, 0 inside" in placed.warnings[0]
+    assert (
+        "of the lattice, 1 probe moved out of walls or away from surfaces, 0 inside"
+        in placed.warnings[0]
+    )
     settings |= {"low": [-1.0, 1.0, 0.0], "high": [1.0, 1.0, 0.0], "counts": [3, 1, 1]}
     placed = place_probes(scene(**settings), PILLAR)
     assert placed.names == ("lattice-0-0-0", "lattice-2-0-0")

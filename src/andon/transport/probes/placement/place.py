@@ -15,6 +15,7 @@ from andon.files.volumes.rounded import in_single
 from andon.quantities import Geometry
 from andon.scene import Scene
 from andon.scene.probes import ProbePlace, Probes
+from andon.transport.probes.placement.clearance import nearest_within
 from andon.transport.probes.placement.generate import (
     MAX_PROBES,
     Generated,
@@ -35,6 +36,8 @@ Float = NDArray[np.float64]
 # Probes nearer than this are one, metres: light does not differ over a millimetre, but the cells
 # between such probes are slivers.
 SAME_PLACE_M = 1e-3
+# Probes by hand nearer to a surface than this see little else in half of all directions, metres.
+NEAR_WALL_M = 0.01
 # Names that a warning lists before it goes on with "…".
 SHOWN_NAMES = 5
 
@@ -82,7 +85,8 @@ def place_probes(scene: Scene, geometry: Geometry, /) -> Placed:
     kept = _apart(entries)
     left_out = [entries[index] for index in sorted(set(range(len(entries))) - set(kept))]
     entries = _uniquely_named(entries[index] for index in kept)
-    tally = replace(made.tally, merged=len(left_out), in_walls=_in_walls(entries, walls))
+    in_walls, near_walls = _at_walls(entries, walls)
+    tally = replace(made.tally, merged=len(left_out), in_walls=in_walls, near_walls=near_walls)
     return Placed(
         np.array([entry.position for entry in entries]),
         np.array([entry.capture_position for entry in entries]),
@@ -173,7 +177,7 @@ def _nothing(scene: Scene, probes: Probes, tally: Tally) -> InputError:
         )
     return InputError(
         f"no probe is left: {tally.dropped_in_walls} places lie inside walls, {tally.hidden} "
-        "behind one",
+        f"behind one, {tally.too_near} nearer to one than offset_m",
         file=scene.file,
         field="probes.placement",
         remedy="choose another box; or the surface is wound clockwise, and all of space is behind "
@@ -232,13 +236,19 @@ def _uniquely_named(entries: Iterable[_Entry]) -> list[_Entry]:
     return named
 
 
-def _in_walls(entries: list[_Entry], walls: Walls) -> tuple[str, ...]:
-    """Names of those by hand that are captured inside a wall; panoramas are captured nowhere."""
+def _at_walls(entries: list[_Entry], walls: Walls) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names of those by hand that are captured inside a wall, and of others that are nearly.
+
+    Panoramas are captured nowhere.
+    """
     judged = [entry for entry in entries if entry.by_hand and entry.panorama is None]
     if not judged or len(walls.geometry.triangles) == 0:
-        return ()
-    buried = walls.sight(np.array([entry.capture_position for entry in judged])).buried
-    return tuple(entry.name for entry, is_in in zip(judged, buried, strict=True) if is_in)
+        return (), ()
+    points = np.array([entry.capture_position for entry in judged])
+    buried = walls.sight(points).buried
+    near = nearest_within(points, walls.geometry, NEAR_WALL_M).distance_m < NEAR_WALL_M
+    inside, close = np.flatnonzero(buried), np.flatnonzero(near & ~buried)
+    return tuple(judged[i].name for i in inside), tuple(judged[i].name for i in close)
 
 
 def _warnings(
@@ -255,16 +265,12 @@ def _warnings(
         found.append(
             f"{_probes(len(tally.in_walls))} inside a wall or behind it: {_listed(tally.in_walls)}"
         )
-    if probes.placement.kind == "lattice" and tally.moved + tally.dropped_in_walls:
+    if tally.near_walls:
         found.append(
-            f"of the lattice, {_probes(tally.moved)} moved out of walls, "
-            f"{tally.dropped_in_walls} inside walls left out"
+            f"{_probes(len(tally.near_walls))} nearer than {NEAR_WALL_M * 1e2:g} cm to a surface: "
+            f"{_listed(tally.near_walls)}"
         )
-    if probes.placement.kind == "random" and made < probes.placement.count:
-        found.append(
-            f"only {made} of {probes.placement.count} random probes have room: "
-            f"{tally.crowded} places were too near to one, {tally.dropped_in_walls} in walls"
-        )
+    found += _of_generated(probes, tally, made)
     odd, turned = winding_faults(geometry)
     if odd + turned:
         found.append(
@@ -272,6 +278,22 @@ def _warnings(
             "triangles are wound against each other: what is inside a wall is told by majority"
         )
     return tuple(found)
+
+
+def _of_generated(probes: Probes, tally: Tally, made: int) -> list[str]:
+    kind = probes.placement.kind
+    if kind == "lattice" and tally.moved + tally.dropped_in_walls + tally.too_near:
+        return [
+            f"of the lattice, {_probes(tally.moved)} moved out of walls or away from surfaces, "
+            f"{tally.dropped_in_walls} inside walls and {tally.too_near} too near to one left out"
+        ]
+    if kind == "random" and made < probes.placement.count:
+        return [
+            f"only {made} of {probes.placement.count} random probes have room: "
+            f"{tally.crowded} places were too near to one, {tally.dropped_in_walls} in walls, "
+            f"{tally.too_near} too near to a surface"
+        ]
+    return []
 
 
 def _probes(number: int) -> str:

@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import shutil
 
 import numpy as np
 import pytest
@@ -13,6 +14,8 @@ from .tree import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = re.findall(r"`andon (relight [^`]*)`", README)
+PROBE_COMMANDS = re.findall(r"`andon (probes [^`]*)`", README)
+PYTHON = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
 FILES = dict(re.findall(r"```toml\n# ([\w.]+)[^\n]*\n(.*?)```", README, re.DOTALL))
 
 
@@ -29,7 +32,8 @@ def folder(tmp_path, monkeypatch):
 
 def test_it_shows_something():
     assert len(COMMANDS) >= 4
-    assert set(FILES) == {"camera.toml", "night.toml"}
+    assert [command.split()[1] for command in PROBE_COMMANDS] == ["place", "bake", "show", "export"]
+    assert set(FILES) == {"camera.toml", "night.toml", "probes.toml"}
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -43,12 +47,23 @@ def test_command(command, folder, capsys):
 
 
 def test_python(folder, capsys):
-    blocks = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    assert blocks
-    for block in blocks:
-        names = {}
-        exec(compile(block, "README.md", "exec"), names)
-        assert names["frame"].illuminance.lux.max() > 10
+    names = {}
+    exec(compile(PYTHON[0], "README.md", "exec"), names)
+    assert names["frame"].illuminance.lux.max() > 10
+
+
+def test_probes(folder, capsys):
+    shutil.copy(ROOT / "examples" / "basic" / "room.glb", folder)
+    for command in PROBE_COMMANDS:
+        assert _run(shlex.split(command), debug=True) == 0
+    assert (folder / "probes.png").is_file()
+    assert (folder / "probes.json").is_file()
+    names = {}
+    exec(compile(PYTHON[1], "README.md", "exec"), names)
+    assert names["light"].shape == (2, 9, 3)
+    lux = names["andon"].harmonics.irradiance(names["light"], np.array([0.0, 1.0, 0.0]))
+    assert (lux > 1000).all()
+    assert len(PYTHON) == 2
 
 
 def test_links():

@@ -1,13 +1,16 @@
 """`andon probes info` and `andon probes export`."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from andon.files import write_volume
-from andon.files.volumes import rounded
+from andon.files.volumes import Distances, rounded
+from andon.harmonics import basis, deringed, smallest
 from andon.transport.probes.export import EXPORTS, ExportUnit, probe_lights
+from andon.transport.probes.light import probe_coefficients, probe_light
 from volume_files import flat_volume, two_rooms
 
 from .command import run_andon, run_refused
@@ -117,6 +120,47 @@ def test_export_outside_takes_the_nearest_point_of_the_hull(capfd, folder):
     np.testing.assert_allclose(
         np.array(row[-27:], float).reshape(9, 3), volume.states["day"][0], rtol=1e-9
     )
+
+
+def exported(capfd, *words):
+    """(rows, k, 3) of the table."""
+    outcome = run_andon(capfd, "probes", "export", *words, "--format", "csv")
+    assert outcome.code == 0, outcome.err
+    rows = [line.split(",")[4:] for line in outcome.out.splitlines()[1:]]
+    return np.array(rows, float).reshape(len(rows), -1, 3)
+
+
+@pytest.fixture
+def ringing(folder):
+    """A lone lamp at each probe, and every other probe sees nothing but a wall beside it."""
+    volume = two_rooms()
+    lamps = 50 * basis(np.tile([[0.6, 0.0, 0.8], [0.0, 1.0, 0.0]], (5, 1)))
+    near = np.where(np.arange(10) % 2 == 0, 0.01, 9.0)[:, None, None] * np.ones((10, 4, 4))
+    walls = Distances(near.astype(np.float32), (near**2).astype(np.float32), 100.0)
+    states = {"day": lamps[..., None] * np.ones(3)}
+    write_volume(folder / "ringing.glb", replace(volume, states=states, distances=walls))
+    return rounded(replace(volume, states=states, distances=walls))
+
+
+def test_export_smooths_unless_told_otherwise(capfd, ringing):
+    raw = exported(capfd, "ringing.glb", "--raw")
+    np.testing.assert_allclose(raw, ringing.states["day"], rtol=1e-12)
+    assert smallest(raw).max() < -1
+    smooth = exported(capfd, "ringing.glb")
+    np.testing.assert_allclose(smooth, deringed(ringing.states["day"]), rtol=1e-12, atol=1e-12)
+    assert smallest(smooth).min() > -1e-9
+
+
+def test_export_at_a_point_asks_the_walls_unless_told_otherwise(capfd, ringing):
+    place = ("ringing.glb", "--at", "0.4,0.2,-0.3")
+    through = exported(capfd, *place, "--no-visibility")
+    seen = exported(capfd, *place)
+    light = probe_light(ringing)
+    at = np.array([[0.4, 0.2, -0.3]])
+    np.testing.assert_allclose(seen, probe_coefficients(light, at), rtol=1e-9, atol=1e-9)
+    plain = probe_coefficients(replace(light, walls=None), at)
+    np.testing.assert_allclose(through, plain, rtol=1e-9, atol=1e-9)
+    assert np.abs(seen - through).max() > 1
 
 
 @pytest.mark.parametrize(

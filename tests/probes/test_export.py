@@ -10,15 +10,16 @@ import pytest
 from PIL import Image
 
 from andon.errors import InputError
-from andon.harmonics import basis, convolved, cube_directions, irradiance
+from andon.harmonics import basis, convolved, cube_directions, deringed, irradiance, smallest
 from andon.harmonics.conventions import from_cmgen_text, from_gltf, from_three, from_unity
 from andon.responses import srgb_decode
 from andon.transport.probes.export import (
     EXPORTS,
     ExportUnit,
-    ProbeLight,
+    PlacedLight,
     chosen_probe,
     csv_text,
+    exported_lights,
     filament_text,
     image_based_glb,
     probe_lights,
@@ -26,7 +27,10 @@ from andon.transport.probes.export import (
     unity_json,
 )
 from andon.transport.probes.export.image_based import SIZES, band_factors
+from andon.transport.probes.light import light_between, probe_coefficients
 from volume_files import light, two_rooms
+
+from .volumes import POSITIONS, unit_vectors, volume_at
 
 SEED = 7
 MEASURED = ExportUnit()
@@ -42,7 +46,7 @@ def probe(order=2, seed=3):
     """Light that is nowhere negative by much, at a place that tells the axes apart."""
     values = light(1, order, seed)[0]
     values[1:] *= 0.3
-    return ProbeLight("門 a", np.array([1.0, 2.0, -3.0]), values)
+    return PlacedLight("門 a", np.array([1.0, 2.0, -3.0]), values)
 
 
 def expected(found, directions):
@@ -157,7 +161,7 @@ def test_white_light_from_all_sides_is_white():
     """Luminance 50 everywhere, white 50: a white diffuse surface is 1 in every program."""
     flat = np.zeros((9, 3))
     flat[0] = 50 * np.sqrt(4 * np.pi)
-    found = ProbeLight("a", np.zeros(3), flat)
+    found = PlacedLight("a", np.zeros(3), flat)
     three = json.loads(three_json([found], RELATIVE))["object"]["sh"]
     np.testing.assert_allclose(three_irradiance(three, normals()) / np.pi, 1, rtol=1e-6)
     sh = np.array(json.loads(unity_json([found], RELATIVE))["probes"][0]["sh"]).reshape(3, 9)
@@ -254,7 +258,7 @@ def test_blur_goes_from_a_mirror_to_the_cosine():
 
 
 def test_black_light():
-    found = ProbeLight("a", np.zeros(3), np.zeros((9, 3)))
+    found = PlacedLight("a", np.zeros(3), np.zeros((9, 3)))
     lights, levels, _ = image_based(image_based_glb([found], MEASURED))
     assert lights[0]["intensity"] == 1
     assert all(level.max() == 0 for level in levels[0])
@@ -316,3 +320,71 @@ def test_probes_are_chosen_by_name_or_number():
             chosen_probe(names, typed)
     with pytest.raises(InputError, match="did you mean 'kitchen'"):
         chosen_probe(("kitchen", "hall"), "kichen")
+
+
+# ── which light ───────────────────────────────────────────────────────────────────────────────
+
+
+def ringing_volume(order=2, distances=None):
+    """Probes with a lone small lamp each: as sharp as the bands are."""
+    values = 40 * basis(unit_vectors(64, seed=order), order)[..., None] * [1.0, 0.8, 0.5]
+    return volume_at(POSITIONS["lattice"], values, distances)
+
+
+def least(coefficients):
+    """The smallest illuminance of light (k, 3), relative to the mean."""
+    return (smallest(coefficients) / (np.pi * coefficients[0] / np.sqrt(4 * np.pi))).min()
+
+
+@pytest.mark.parametrize("order", [2, 3, 4])
+@pytest.mark.parametrize("name", EXPORTS)
+def test_what_is_exported_does_not_ring(name, order):
+    """Neither with all bands nor with those that the format holds; as captured, both would."""
+    volume = ringing_volume(order)
+    export, light_of = EXPORTS[name], volume.states["day"]
+    raw = exported_lights(volume, light_of, export, dering=False)
+    smooth = exported_lights(volume, light_of, export)
+    assert len(raw) == len(smooth) == 64
+    for before, after, own in zip(raw, smooth, light_of, strict=True):
+        np.testing.assert_array_equal(before.coefficients, own)
+        assert least(before.coefficients) < -0.05 / order
+        assert least(after.coefficients) > -1e-9
+        if export.cuts_bands:
+            assert least(after.coefficients[:9]) > -1e-9
+    if order == 2 or not export.cuts_bands:
+        given = np.stack([found.coefficients for found in smooth])
+        np.testing.assert_allclose(given, deringed(light_of), rtol=1e-12, atol=1e-12)
+
+
+def test_light_that_does_not_ring_is_exported_bit_for_bit():
+    volume = two_rooms(order=2)
+    lights = exported_lights(volume, volume.states["day"], EXPORTS["csv"])
+    given = np.stack([found.coefficients for found in lights])
+    np.testing.assert_array_equal(given, volume.states["day"])
+
+
+def test_walls_count_at_a_point():
+    """What frames look up there; without visibility, the four probes of the cell."""
+    hidden = np.where(np.arange(64) % 2 == 0, 0.05, 9.0)[:, None, None, None]
+    volume = ringing_volume(distances=np.broadcast_to(hidden, (64, 6, 8, 8)))
+    smooth, at = deringed(volume.states["day"]), np.array([0.4, 1.3, 2.2])
+    expected = {
+        walls: probe_coefficients(light_between(volume, smooth, visibility=walls), at[None])[0]
+        for walls in (True, False)
+    }
+    assert np.abs(expected[True] - expected[False]).max() > 1
+    for walls, light_there in expected.items():
+        (found,) = exported_lights(
+            volume, volume.states["day"], EXPORTS["three"], at=at, visibility=walls
+        )
+        np.testing.assert_allclose(found.coefficients, light_there, rtol=1e-12, atol=1e-12)
+        np.testing.assert_array_equal(found.position_m, at)
+        assert found.name == "light at 0.4 1.3 2.2"
+
+
+def test_a_point_or_a_probe():
+    volume = ringing_volume()
+    (found,) = exported_lights(volume, volume.states["day"], EXPORTS["csv"], probe="p5")
+    np.testing.assert_array_equal(found.position_m, volume.positions[5])
+    with pytest.raises(InputError, match="one of probe and at"):
+        exported_lights(volume, volume.states["day"], EXPORTS["csv"], probe="p5", at=np.zeros(3))

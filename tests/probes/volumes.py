@@ -3,10 +3,7 @@
 import numpy as np
 
 from andon.files.volumes import Distances, ProbeVolume, Zone
-from andon.transport.probes.cells import build_cells
-from andon.transport.probes.hidden import walls_of
-from andon.transport.probes.light import ProbeLight
-from andon.transport.probes.space import ProbeSpace
+from andon.transport.probes.light import probe_light
 from andon.transport.probes.visibility import distance_map
 from worlds import unit
 
@@ -66,6 +63,4 @@ def random_volume(positions, order=2, seed=0, zones=None):
 
 
 def light_of(volume, *, walls=True):
-    cells = build_cells(volume.positions, volume.zones)
-    seen = walls_of(volume, cells) if walls else None
-    return ProbeLight(ProbeSpace(volume), volume.states["day"], seen)
+    return probe_light(volume, dering=False, visibility=walls)

@@ -80,12 +80,6 @@ def test_objects_that_cast_no_shadow_are_no_casters(tmp_path):
     assert model.objects.material_ids.tolist() == [0] * 12 + [1] * 12
 
 
-def test_motion_of_objects_is_refused_not_ignored(tmp_path):
-    write_glb(tmp_path / "box.glb", block((1, 1, 1), (0, 0, 0)))
-    with pytest.raises(InputError, match=r"object\[0\]\.animation: animation is in the schema"):
-        loaded(tmp_path, object=[{"mesh": "box.glb", "animation": "walk"}])
-
-
 # ── normals alone ─────────────────────────────────────────────────────────────────────────────
 
 POSE = look_at(np.array([0.0, 1, 2]), np.array([0.5, 0.5, 0]))
@@ -221,7 +215,7 @@ def test_objects_share_no_slots(tmp_path):
     assert (many.name, many.first_slot, many.slots, many.triangles) == ("object[0]", 0, 300, 300)
     assert (lamp.first_slot, lamp.slots, lamp.triangles) == (300, 1, 12)
     assert model.object_of_slot.tolist() == [0] * 300 + [1]
-    assert_agree(model.object_middles, [[150, 0.5, -3], [0, 0, 0]], atol=1e-6)
+    assert_agree(model.still_middles, [[150, 0.5, -3], [0, 0, 0]], atol=1e-6)
     assert len(objects.materials) == 301
     assert any(objects.materials[300].emissive_cd_m2)
     assert (objects.material_ids[300:] == 300).all()

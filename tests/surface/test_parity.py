@@ -156,7 +156,7 @@ def test_drawing_twice_gives_the_same_bytes(gpu):
 
 
 def test_vertices_are_shared_only_where_they_may_be():
-    from andon.surface.stage import vertex_arrays
+    from andon.surface.vertices import vertex_arrays
 
     flat, smooth = ball(1, (0, 0, 0), 2), None
     smooth = replace(flat, normals=flat.positions)

@@ -223,15 +223,13 @@ class _Bake:
         return Distances(mean, square, self.far_m)
 
     def _probe_light(self, light: Float, distances: Distances | None) -> ProbeLight:
-        from andon.transport.probes.hidden import walls_of
-        from andon.transport.probes.light import ProbeLight
-        from andon.transport.probes.space import ProbeSpace
+        from andon.transport.probes.light import light_between
 
         volume = self._volume(light, distances)
         # Where light is taken away a mean may be negative, and there is nothing to be smoothed.
         can_ring = self.probes.dering and bool((light[:, 0] >= 0).all())
         smooth = deringed(light) if can_ring else light
-        return ProbeLight(ProbeSpace(volume), smooth, walls_of(volume, self.cells))
+        return light_between(volume, smooth)
 
     def _volume(self, coefficients: Float, distances: Distances | None) -> ProbeVolume:
         from andon import __version__

@@ -11,17 +11,18 @@ from andon.bake.bake import Baked, bake_probes
 from andon.bake.journal import Journal
 from andon.bake.report import BakeReport
 from andon.bake.runner import Progress
-from andon.engines.prepared import prepare
+from andon.engines.reading import read_pictures, view_of
 from andon.errors import InputError
 from andon.files.atomic import write_bytes
 from andon.files.volumes import ProbeVolume, read_volume, rounded, write_volume
 from andon.quantities import Geometry
 from andon.scene import Scene
+from andon.surface.load import load_surface
 from andon.surface.still import still_geometry
 from andon.transport.probes.placement import Placed, place_probes
 from andon.transport.probes.states import with_state
 
-__all__ = ["Written", "bake_file", "placed_in"]
+__all__ = ["Written", "bake_file", "placed_in", "scene_geometry"]
 
 
 @dataclass(frozen=True)
@@ -97,14 +98,20 @@ def _check_folder(folder: Path) -> None:
 
 
 def placed_in(scene: Scene, /) -> Placed:
-    """Where the probes of a scene go; a depth image is seen from its own camera."""
-    return place_probes(scene, _geometry(scene))
+    """Where the probes of a scene go."""
+    return place_probes(scene, scene_geometry(scene))
 
 
-def _geometry(scene: Scene) -> Geometry:
+def scene_geometry(scene: Scene, /) -> Geometry:
+    """What stands still in the scene; a depth image is seen from its own camera.
+
+    Needs no volume. Raises `InputError` for files at fault.
+    """
     if scene.surface is None or scene.surface.mesh is not None:
         return still_geometry(scene)
-    return still_geometry(scene, real=prepare(scene).surface.real)
+    pictures = read_pictures(scene)
+    views = {name: view_of(scene, name, picture.shape) for name, picture in pictures.items()}
+    return still_geometry(scene, real=load_surface(scene, views).real)
 
 
 def _joined(path: Path, baked: Baked) -> tuple[ProbeVolume, bool]:

@@ -44,6 +44,7 @@ class ClipOptions:
 def run(options: ClipOptions) -> None:
     """Draws and writes. Raises `InputError` before anything is drawn."""
     is_folder = _check_out(options.out)
+    from andon.files.pictures.moving import check_moving
     from andon.scene import load_scene
 
     scene = load_scene(options.scene)
@@ -52,6 +53,8 @@ def run(options: ClipOptions) -> None:
     rate = options.frames_per_second
     rate = scene.scene.frames_per_second if rate is None else rate
     times = _times(options, scene, rate)
+    if not is_folder:
+        check_moving(options.out, rate)
     from andon.pipeline import Renderer
 
     renderer = Renderer(scene, options.engine)  # type: ignore[arg-type]

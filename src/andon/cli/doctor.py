@@ -81,6 +81,13 @@ def findings() -> list[Finding]:
         Finding("rays (embreex)", _package("embreex"), "pip install embreex", "shadows, tracing"),
         Finding("EXR", _exr(), "pip install OpenEXR", "illuminance maps"),
         Finding("OpenCV", _package("opencv-python-headless"), "pip install andon", "lenses"),
+        Finding("SciPy", _package("scipy"), "pip install 'andon[probes]'", "baking light probes"),
+        Finding(
+            "Numba",
+            _package("numba"),
+            "pip install 'andon[probes]'",
+            "fast lookups of many points (NumPy does without)",
+        ),
         Finding("Radiance", _rtrace(), "pip install 'andon[radiance]'", "andon verify, bench"),
         Finding("pygfx", _package("pygfx"), "pip install 'andon[bench]'", "andon bench"),
     ]

@@ -56,10 +56,25 @@ def probes_export(
         float | None,
         typer.Option(help="Luminance that becomes 1.0, as engines like it; default: cd/m²."),
     ] = None,
+    raw: Annotated[
+        bool,
+        typer.Option(
+            "--raw",
+            help="Harmonics as captured; default: smoothed as little as keeps illuminance from "
+            "going negative, as frames do.",
+        ),
+    ] = False,
+    visibility: Annotated[
+        bool,
+        typer.Option(
+            help="At a point, walls hide probes, where the volume has distances.",
+        ),
+    ] = True,
 ) -> None:
     """Give the light of probes to another program.
 
-    All but csv hold bands 0 to 2. unity negates x, as glTF importers there do.
+    It is the light that frames show: smoothed where it rings, and at a point without what walls
+    hide. All but csv hold bands 0 to 2. unity negates x, as glTF importers there do.
 
     Examples:
 
@@ -71,4 +86,8 @@ def probes_export(
     """
     from andon.cli.probe_export import ExportOptions, run
 
-    run(ExportOptions(volume, format, probe, at, out, state, blend_state, blend, white_cd_m2))
+    run(
+        ExportOptions(
+            volume, format, probe, at, out, state, blend_state, blend, white_cd_m2, raw, visibility
+        )
+    )

@@ -11,11 +11,9 @@ from andon.cli.console import check_writable, note, printable
 from andon.errors import InputError
 
 if TYPE_CHECKING:
-    from andon.quantities import Geometry
-    from andon.scene import Scene
     from andon.transport.probes.placement import Placed
 
-__all__ = ["place", "scene_geometry"]
+__all__ = ["place"]
 
 # A list on the terminal: what is longer is read from the file.
 SHOWN_NAMES = 8
@@ -38,32 +36,21 @@ def place(
 
         andon probes place scene.toml -o locators.glb
     """
+    from andon.bake.to_file import placed_in
     from andon.scene import load_scene
-    from andon.transport.probes.placement import place_probes
 
     if out is not None:
         check_writable(out, (".toml", ".glb"), "--out")
         if out.resolve() == scene.resolve():
             raise InputError("is also the input, and would be overwritten", file=out)
     loaded = load_scene(scene)
-    placed = place_probes(loaded, scene_geometry(loaded))
+    placed = placed_in(loaded)
     _print(placed)
     for warning in placed.warnings:
         note(printable(warning))
     if out is not None:
         _write(placed, out, scene)
         print(out)
-
-
-def scene_geometry(scene: Scene) -> Geometry:
-    """What stands still in the scene; a depth image is seen from its own camera."""
-    from andon.surface.still import still_geometry
-
-    if scene.surface is None or scene.surface.mesh is not None:
-        return still_geometry(scene)
-    from andon.engines.prepared import prepare
-
-    return still_geometry(scene, real=prepare(scene).surface.real)
 
 
 def _print(placed: Placed) -> None:

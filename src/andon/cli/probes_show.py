@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from andon.cli.console import check_writable, note, printable
+from andon.cli.points import point_of
 from andon.errors import InputError, nearest_name
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ def show(
     check_writable(out, (".png",), "--out")
     shape = _size(size)
     parts = _parts(what)
-    ends = _point(eye, "--from"), _point(target, "--at")
+    ends = point_of(eye, "--from"), point_of(target, "--at")
     if exposure is not None and not 0 < exposure < float("inf"):
         raise InputError(f"must be > 0, got {exposure:g}", field="--exposure")
     subject = _subject(file)
@@ -116,25 +117,6 @@ def _parts(text: str) -> tuple[Part, ...]:
     return tuple(part for part in PARTS if part in words)
 
 
-def _point(text: str | None, field: str) -> Float | None:
-    """(3,) of three numbers with commas, or None."""
-    import numpy as np
-
-    if text is None:
-        return None
-    try:
-        values = np.array([float(word) for word in text.split(",")])
-    except ValueError:
-        values = np.array([np.nan])
-    if values.shape != (3,) or not np.isfinite(values).all():
-        raise InputError(
-            f"must be three numbers with commas, got {text[:40]!r}",
-            field=field,
-            remedy=f"for example {field} 0,1.6,3",
-        )
-    return values
-
-
 def _subject(file: Path) -> _Subject:
     from andon.files.volumes import read_volume
 
@@ -142,7 +124,7 @@ def _subject(file: Path) -> _Subject:
         return _Subject(read_volume(file))
     if file.suffix.lower() != ".toml":
         raise InputError("must be a probe volume (.glb) or a scene (.toml)", file=file)
-    from andon.cli.probes_place import scene_geometry
+    from andon.bake.to_file import scene_geometry
     from andon.scene import load_scene
 
     scene = load_scene(file)

@@ -147,7 +147,9 @@ def cube_setting(scene: Scene, prepared: Prepared, /) -> CubeSetting:
     if prepared.frames and len(real.triangles) and not _states_reflectance(real):
         photograph = _photograph(prepared)
     ambient = prepared.ambient
-    lux = np.asarray(ambient.dimming) * ambient.mean_lux
+    lux: Float = np.asarray(ambient.dimming) * ambient.mean_lux
+    if scene.ambient is None:  # then what stands for E0 is no light
+        lux = np.zeros(3)
     # A material whose light the photograph shows emits nothing beside it.
     seen = model if photograph is None else replace(model, real=_without_materials(real))
     materials = [m for part in (seen.real, seen.objects) for m in part.materials]

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from andon import gbuffer
 from andon.composite import stage as composite
-from andon.composite.lamp_pictures import body_rectangle
 from andon.display.stage import DisplayStage
+from andon.engines.changes import Changes, Rectangle
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import NO_LAMPS, PROBES, taking
@@ -19,6 +20,7 @@ from andon.gpu.device import open_gpu
 from andon.gpu.passes import FullscreenPass
 from andon.gpu.textures import Texture, make_texture
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
+from andon.surface.model import SurfaceModel
 from andon.surface.stage import GpuSurface, SurfaceStage
 from andon.transport.direct import stage as direct
 from andon.transport.probes.stage import ProbeBuffers, ProbePicture
@@ -35,7 +37,7 @@ class _View:
 
     def __init__(self, engine: GpuEngine, frame: CameraFrame) -> None:
         gpu, prepared = engine.gpu, engine.prepared
-        self.frame, self.model = frame, prepared.surface
+        self.frame = frame
         self.has_lamps = False
         view = frame.view
         start = engine.start
@@ -68,6 +70,7 @@ class _View:
         self.probes: ProbePicture | None = None
         if engine.probes is not None:
             self.probes = ProbePicture(engine.probes, view, seen.texture.view, seen.view_buffer)
+            self._changes = Changes(view, _standing_in_probes(prepared.surface))
             groups.append(bind_group(gpu, {0: ("float", self.probes.lux.view)}, "probes"))
         options: dict[str, Any] = {
             "structs": STRUCTS,
@@ -81,25 +84,23 @@ class _View:
             gpu, FRAME, "illuminance_map", [self.lux_map.format], groups, **options
         )
 
-    def object_rectangles(self) -> list[tuple[int, int, int, int]]:
-        """Where the objects that probes light are in the picture."""
-        model, view = self.model, self.frame.view
-        ends = np.cumsum([info.triangles for info in model.objects_table])
-        found: list[tuple[int, int, int, int]] = []
-        for info, end in zip(model.objects_table, ends.tolist(), strict=True):
-            if info.lit_by_probes:
-                if end > len(model.objects.triangles):  # it moves: it may be anywhere
-                    return [(0, 0, view.width, view.height)]
-                part = model.objects.triangles[end - info.triangles : end]
-                rectangle = body_rectangle(view, model.objects.positions[part].reshape(-1, 3))
-                found += [] if rectangle is None else [rectangle]
-        return found
+    def changed_rectangles(self, moment: Moment) -> list[Rectangle]:
+        """Where the light of probes has to be drawn anew: all of it once, then what moved."""
+        bodies = [body.geometry for body in moment.bodies]
+        return self._changes.since_last([*moment.movers, *bodies])
 
     def _entry_point(self, prepared: Prepared) -> str:
         if self.composite.has_maps:
             return "relit_with_maps"
         has_objects = prepared.surface.has_objects or self.surface.has_bodies
         return "relit_with_objects" if has_objects else "relit"
+
+
+def _standing_in_probes(model: SurfaceModel) -> list[NDArray[np.float64]]:
+    """(n, 3) corners of each object that stands still and is lit by probes."""
+    still = model.objects_table[: len(model.objects_table) - len(model.movers)]
+    lit = [number for number, info in enumerate(still) if info.lit_by_probes]
+    return [model.corners_of(number).reshape(-1, 3) for number in lit]
 
 
 class GpuEngine:
@@ -167,7 +168,7 @@ class GpuEngine:
         """Records direct light and composite in one pass, then the visible lamps."""
         if self.probes is not None and light.probes is not None:
             self.probes.move(moment.object_middles)
-            light.probes.encode(self.encoder, light.object_rectangles())
+            light.probes.encode(self.encoder, light.changed_rectangles(moment))
         light.relit.encode(self.encoder, [light.luminance.view])
         light.has_lamps = light.composite.lamps.encode(
             self.encoder, light.luminance.view, seen, moment.lamps, frame.luminance_per_unit

@@ -35,7 +35,7 @@ from andon.lamps.sources import resolve_sources
 from andon.quantities import CameraFrame, Photometry, merged
 from andon.scene import Scene
 from andon.surface.load import load_surface
-from andon.surface.model import SurfaceModel, middle_of
+from andon.surface.model import SurfaceModel
 from andon.surface.virtual import virtual_surface
 from andon.transport.direct.casters import MOVERS, OBJECTS, REAL, Casters
 
@@ -94,7 +94,7 @@ class Prepared:
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
         movers = tuple(mover.at(time_seconds) for mover in self.surface.movers)
-        moving = np.array([middle_of(part.positions[part.triangles]) for part in movers])
+        moving = np.array([mover.middle for mover in self.surface.movers])
         return Moment(
             time_seconds,
             self.lamps(time_seconds),

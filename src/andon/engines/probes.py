@@ -12,18 +12,19 @@ from numpy.typing import NDArray
 from andon.composite.model import Ambient
 from andon.errors import InputError
 from andon.files.volumes import ProbeVolume, read_volume
-from andon.harmonics import deringed, irradiance
+from andon.harmonics import irradiance
 from andon.quantities import Surface
 from andon.scene import Scene
 from andon.scene.probes import Probes
 from andon.spaces import View
 from andon.surface import reference as surface
 from andon.surface.model import SurfaceModel
-from andon.transport.probes.cells import build_cells
-from andon.transport.probes.hidden import walls_of
-from andon.transport.probes.light import ProbeLight, probe_coefficients, probe_illuminance
-from andon.transport.probes.space import ProbeSpace
-from andon.transport.probes.states import state_coefficients
+from andon.transport.probes.light import (
+    ProbeLight,
+    probe_coefficients,
+    probe_illuminance,
+    probe_light,
+)
 
 __all__ = [
     "NO_LAMPS",
@@ -159,12 +160,15 @@ def _triple(values: object) -> tuple[float, float, float]:
 
 def light_of_volume(volume: ProbeVolume, table: Probes, /) -> ProbeLight:
     """A volume as the table wants it seen: state, zones, smoothing, walls."""
-    coefficients = state_coefficients(volume, table.state, table.blend_state, table.blend)
-    if table.dering:
-        coefficients = deringed(coefficients)
-    cells = volume.cells or build_cells(volume.positions, volume.zones)
-    space = ProbeSpace(replace(volume, cells=cells), table.zones)
-    return ProbeLight(space, coefficients, walls_of(volume, cells) if table.visibility else None)
+    return probe_light(
+        volume,
+        state=table.state,
+        blend_state=table.blend_state,
+        blend=table.blend,
+        zones=table.zones,
+        dering=table.dering,
+        visibility=table.visibility,
+    )
 
 
 def ambient_of_probes(

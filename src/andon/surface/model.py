@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from andon.quantities import Geometry, merged
 from andon.surface.movers import Mover
 from andon.surface.occluder import Occluder
+from andon.surface.placing import middle_of
 
 __all__ = ["EMPTY_GEOMETRY", "ObjectInfo", "ShadowBias", "SurfaceModel"]
 
@@ -27,7 +28,8 @@ class ShadowBias:
     ----------
     real_m : on the real surface: what decimation and the noise of a depth image leave between
         surface and occluder. Shadows thinner than this, at contacts, are lost.
-    object_m : on virtual objects, whose occluder is the object itself: float32 rounding only.
+    object_m : on virtual objects, whose occluder is the object itself: float32 rounding, and of
+        smooth ones what their normals and their triangles differ by within a texel.
     """
 
     real_m: float = 1e-3
@@ -140,9 +142,3 @@ class SurfaceModel:
     def is_distant_only(self) -> bool:
         """No positions are known: only directional, sky and hemisphere lamps can light it."""
         return bool(self.normals) and not self.depth and len(self.real.triangles) == 0
-
-
-def middle_of(points: NDArray[np.float64], /) -> NDArray[np.float64]:
-    """(3,) the middle of the bounding box of points (…, 3)."""
-    flat = points.reshape(-1, 3)
-    return 0.5 * (flat.min(axis=0) + flat.max(axis=0))

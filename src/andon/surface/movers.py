@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from andon.files.meshes import AnimatedMesh
 from andon.files.meshes.gltf.clips import Clip
 from andon.quantities import Geometry
-from andon.surface.placing import placed, placed_vertices
+from andon.surface.placing import middle_of, placed, placed_vertices
 
 __all__ = ["Mover", "Play"]
 
@@ -70,16 +70,18 @@ class Mover:
         self._rest = geometry
         self._placed = placed(geometry, placement(0.0))
         self._shown: tuple[bytes, float] | None = None
-
-    @property
-    def materials(self) -> int:
-        """How many materials it has."""
-        return len(self._rest.materials)
+        # Files may hold vertices that no triangle has: they are no part of its box.
+        self._used = np.unique(geometry.triangles)
 
     @property
     def geometry(self) -> Geometry:
         """Its triangles and materials, where it was asked for last."""
         return self._placed
+
+    @property
+    def middle(self) -> Float:
+        """(3,) metres, the middle of its bounding box, where it was asked for last."""
+        return middle_of(self._placed.positions[self._used])
 
     def at(self, time_seconds: float, /) -> Geometry:
         """Where it is at a time of the session; the same object as before if it did not move."""

@@ -158,7 +158,8 @@ def two_rooms(thickness_m: float = 0.1) -> LitRoom:
 def coloured_room() -> LitRoom:
     """A room of 3 × 3 × 3 m around the origin, open to no side; its lamp is below the ceiling."""
     panels = _shell(
-        (-1.5, -1.5, -1.5), (1.5, 1.5, 1.5), (0.75, 0.06, 0.05), (0.6,) * 3, (0.6,) * 3,
+        (-1.5, -1.5, -1.5), (1.5, 1.5, 1.5), (0.75, 0.06, 0.05),
+        (0.6, 0.6, 0.6), (0.6, 0.6, 0.6),
         (0.06, 0.6, 0.08),
     )  # fmt: skip
     return LitRoom(_walls(panels), np.array([0.0, 1.1, 0.2]), 150.0)

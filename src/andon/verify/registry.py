@@ -56,6 +56,7 @@ def rows() -> tuple[Row, ...]:
         photometry,
         probe_capture,
         probe_light,
+        probe_space,
         relight,
         synthetic,
     )
@@ -71,4 +72,5 @@ def rows() -> tuple[Row, ...]:
         *probe_capture.ROWS,
         *harmonics.ROWS,
         *probe_light.ROWS,
+        *probe_space.ROWS,
     )

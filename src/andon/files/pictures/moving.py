@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.files.atomic import write_atomically
 
-__all__ = ["MOVING_SUFFIXES", "write_moving"]
+__all__ = ["MOVING_SUFFIXES", "check_moving", "frame_times", "write_moving"]
 
 # suffix: (Pillow's name, unit of its frame times in ms, options)
 _FORMATS: dict[str, tuple[str, int, dict[str, Any]]] = {
@@ -43,33 +43,38 @@ def write_moving(
         if the folder cannot be written or the disk is full.
     """
     path = Path(path)
-    if path.suffix.lower() not in _FORMATS:
-        known = ", ".join(_FORMATS)
-        raise InputError(
-            f"the suffix of a moving picture must be {known}, got {path.suffix!r}", file=path
-        )
+    check_moving(path, frames_per_second)
     if not frames or any(frame.shape != frames[0].shape for frame in frames):
         raise InputError("a moving picture must have frames of one size", file=path)
     name, unit_ms, options = _FORMATS[path.suffix.lower()]
     times = frame_times(len(frames), frames_per_second, unit_ms)
-    if min(times) < (SHORTEST_GIF_MS if name == "GIF" else unit_ms):
-        raise InputError(
-            f"{frames_per_second:g} frames a second are too many for {path.suffix}",
-            file=path,
-            remedy="at most 50 for .gif, 1000 else",
-        )
     from PIL import Image
 
     pictures = [Image.fromarray(np.ascontiguousarray(frame)) for frame in frames]
     if len(pictures) > 1:
-        options = options | {"append_images": pictures[1:], "save_all": True}
-    if len(pictures) > 1 or name != "PNG":
-        options = options | {"duration": times, "loop": 0}
+        moving = {"append_images": pictures[1:], "save_all": True, "duration": times, "loop": 0}
+        options = options | moving
 
     def fill(temporary: Path) -> None:
         pictures[0].save(temporary, format=name, **options)
 
     return write_atomically(path, fill)
+
+
+def check_moving(path: Path, frames_per_second: float, /) -> None:
+    """Refuses a suffix that is no moving picture's, and more frames a second than it holds."""
+    if path.suffix.lower() not in _FORMATS:
+        known = ", ".join(_FORMATS)
+        raise InputError(
+            f"the suffix of a moving picture must be {known}, got {path.suffix!r}", file=path
+        )
+    most = 1000 / (SHORTEST_GIF_MS if path.suffix.lower() == ".gif" else 1)
+    if not 0 < frames_per_second <= most:
+        raise InputError(
+            f"must be more than 0 and at most {most:g} frames a second for {path.suffix}, "
+            f"got {frames_per_second:g}",
+            file=path,
+        )
 
 
 def frame_times(count: int, frames_per_second: float, unit_ms: int = 1, /) -> list[int]:

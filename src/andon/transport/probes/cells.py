@@ -23,6 +23,7 @@ not pass is built again with a stronger lift (`delaunay.ATTEMPTS`), and then ref
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -210,9 +211,8 @@ def _check(at: Float, found: Int) -> None:
     unused = np.setdiff1d(np.arange(len(at)), found)
     if len(unused):
         raise Tangle(f"{len(unused)} probes are in no cell")
-    factorial = (1, 1, 2, 6)[at.shape[1]]
     whole = float(spatial().ConvexHull(at).volume)
-    if abs(volume.sum() / factorial - whole) > VOLUME * whole:
+    if abs(float(volume.sum()) / factorial(at.shape[1]) - whole) > VOLUME * whole:
         raise Tangle("the cells do not fill the hull")
 
 

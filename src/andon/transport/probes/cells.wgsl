@@ -72,12 +72,14 @@ fn smallest(v: vec4f) -> i32 {
 }
 
 fn walk_cells(position: vec3f, start: i32) -> Walked {
-  var cell = start;
+  var cell = max(start, 0);
   // No cell, and no facet either, which are negative numbers here.
   var before = -3e38;
-  var exit = -1;
+  // In a zone without volume, the facet where the walk on its facets begins.
+  var exit = select(-1, -1 - start, start < 0);
   var weights = vec4f(0.25);
-  for (var step = 0; step < PROBE_CELL_STEPS; step++) {
+  let last = select(PROBE_CELL_STEPS, 0, start < 0);
+  for (var step = 0; step < last; step++) {
     weights = barycentric(cell, position);
     let beyond = datum(PROBE_CELLS + 5 * cell + 3);
     // Whoever came through a face lies on this side of it, whatever rounding says.

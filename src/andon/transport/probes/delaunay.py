@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from andon.errors import MachineError
 
-__all__ = ["ATTEMPTS", "nearest_distances", "simplices", "volumes"]
+__all__ = ["ATTEMPTS", "nearest_distances", "simplices", "stretch", "volumes"]
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
@@ -40,7 +40,7 @@ Int = NDArray[np.int32]
 # tolerance is some 1e-14 of the extent squared; even among 46³ points of a lattice, 1/45 apart, the
 # first ε moves a corner off its cell's sphere by 5e-6. Stretched cells are not Delaunay, but cells:
 # for sets so thin that their thickness squared is no more than rounding.
-ATTEMPTS = ((1e-2, 1e-4, False), (1e-1, 1e-3, False), (1e-2, 1e-4, True), (1e-1, 1e-3, True))
+ATTEMPTS = ((1e-2, 1e-6, False), (1e-1, 1e-3, False), (1e-2, 1e-6, True), (1e-1, 1e-3, True))
 
 # Symmetric, eigenvalues within ±1, all off-diagonals negative, otherwise arbitrary: no ratio of two
 # entries is a simple fraction.
@@ -123,6 +123,13 @@ def _lift(points: Float, epsilon: float, noise: float) -> Float:
         + epsilon * np.einsum("ni,ij,nj->n", points, form, points)
         + noise * nearest**2 * random
     )
+
+
+def stretch(dimensions: int = 3, /) -> Float:
+    """A (d, d) with AᵀA = 1 + εQ: Delaunay cells of A·p are those of `simplices` at its first
+    attempt, but for what only the noise decides."""
+    form = np.eye(dimensions) + ATTEMPTS[0][0] * QUADRATIC[:dimensions, :dimensions]
+    return np.asarray(np.linalg.cholesky(form).T, np.float64)
 
 
 def volumes(points: Float, corners: Int, /) -> Float:

@@ -87,8 +87,8 @@ fn hull_mix(position: vec3f, start: i32) -> ProbeMix {
 // The probes around a point and their weights, ≥ 0, sum 1.
 fn locate(position: vec3f) -> ProbeMix {
   let start = walk_start(position, zone_of(position));
-  if (start < 0) { return hull_mix(position, -1 - start); }
   let walked = walk_cells(position, start);
+  // One call: a software rasteriser pays for each that stands in the code.
   if (walked.exit >= 0) { return hull_mix(position, walked.exit); }
   let weights = max(walked.weights, vec4f(0.0));
   let probes = vec4i(datum(PROBE_CELLS + 5 * walked.cell + 4));

@@ -17,20 +17,31 @@ Per object is the paper's. It is blind to what changes within the object: a trai
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.harmonics import basis, convolved, order_of
-from andon.transport.probes.hidden import Walls, hidden_mix
+from andon.files.volumes.model import ProbeVolume
+from andon.harmonics import basis, convolved, deringed, order_of
+from andon.transport.probes.cells import build_cells
+from andon.transport.probes.hidden import Walls, hidden_mix, walls_of
 from andon.transport.probes.space import Mix, ProbeSpace
+from andon.transport.probes.states import state_coefficients
 
-__all__ = ["ProbeLight", "probe_coefficients", "probe_illuminance", "probe_mix"]
+__all__ = [
+    "ProbeLight",
+    "light_between",
+    "probe_coefficients",
+    "probe_illuminance",
+    "probe_light",
+    "probe_mix",
+]
 
 Float = NDArray[np.float64]
 
-# Points whose mixes are held at once: 36 probes of 27 numbers each, in float64.
+# Points that are looked up at once: where walls hide probes, four texels of 36 of them each.
 CHUNK = 1 << 14
 
 
@@ -48,6 +59,53 @@ class ProbeLight:
     space: ProbeSpace
     coefficients: Float
     walls: Walls | None = None
+
+
+def probe_light(
+    volume: ProbeVolume,
+    /,
+    *,
+    state: str | None = None,
+    blend_state: str | None = None,
+    blend: float = 0.0,
+    zones: Sequence[str] = (),
+    dering: bool = True,
+    visibility: bool = True,
+) -> ProbeLight:
+    """A volume's light as frames look it up.
+
+    Parameters
+    ----------
+    volume : from `read_volume` or a bake; its cells are built where nobody did.
+    state : which of its states; None: the first.
+    blend_state, blend : a second state, of which there is a share of 0…1.
+    zones : names of those in use; none given: all.
+    dering : smooth each probe as little as keeps its irradiance from going negative.
+    visibility : walls hide probes, where the volume has distances.
+
+    Raises
+    ------
+    InputError : there is no such state or zone; `blend` is not in 0…1 or has no second state; what
+        `build_cells` refuses.
+    """
+    coefficients = state_coefficients(volume, state, blend_state, blend)
+    if dering:
+        coefficients = deringed(coefficients)
+    return light_between(volume, coefficients, zones, visibility=visibility)
+
+
+def light_between(
+    volume: ProbeVolume,
+    coefficients: Float,
+    zones: Sequence[str] = (),
+    /,
+    *,
+    visibility: bool = True,
+) -> ProbeLight:
+    """Any light (n, k, 3), cd/m², between the probes of a volume; else as `probe_light`."""
+    cells = volume.cells or build_cells(volume.positions, volume.zones)
+    space = ProbeSpace(replace(volume, cells=cells), zones)
+    return ProbeLight(space, coefficients, walls_of(volume, cells) if visibility else None)
 
 
 def probe_mix(
@@ -73,13 +131,11 @@ def probe_illuminance(light: ProbeLight, points: Float, normals: Float, /) -> Fl
     for first in range(0, len(points), CHUNK):
         part = slice(first, first + CHUNK)
         mix = probe_mix(light, points[part], normals[part])
-        values = basis(normals[part], order)
-        own = np.einsum("qjkc,qk->qjc", lit[mix.probes], values)
-        lux[part] = np.einsum("qj,qjc->qc", mix.weights, own)
+        own = light.space.mixed(mix, lit)
+        lux[part] = np.einsum("qkc,qk->qc", own, basis(normals[part], order))
     return np.maximum(lux, 0)
 
 
 def probe_coefficients(light: ProbeLight, points: Float, /) -> Float:
     """Coefficients (q, k, 3) of luminance, cd/m², at points (q, 3) in free air."""
-    mix = probe_mix(light, points)
-    return np.einsum("qj,qjkc->qkc", mix.weights, light.coefficients[mix.probes])
+    return light.space.mixed(probe_mix(light, points), light.coefficients)

@@ -34,8 +34,9 @@ class Mix:
 
     Attributes
     ----------
-    probes : (q, 4) int32 numbers of probes; not used, with weight 0, the same as another.
-    weights : (q, 4) float64, ≥ 0, sum 1; NaN for a point with a coordinate that is not finite.
+    probes : (q, w) int32 numbers of probes; not used, with weight 0, the same as another. w is 4,
+        or 36 where walls hide some (`hidden_mix`).
+    weights : (q, w) float64, ≥ 0, sum 1; NaN for a point with a coordinate that is not finite.
     cells : (q,) int32 the tetrahedron; −1 − f: the facet f of the hull. A start for the next time.
     """
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, prange
+from numba import njit, parallel_chunksize, prange
 from numpy.typing import NDArray
 
 from andon.transport.probes.locate import FAR, SEARCH_INSIDE
@@ -24,6 +24,8 @@ __all__ = ["Compiled", "compiled", "locate_all", "lookup_all"]
 
 # Points of a run: enough to be near each other, few enough to go round.
 RUN = 1024
+# Runs that a thread takes at a time: some points cost a hundred times as much as others.
+RUNS = 4
 # Share of the extent by which a point is surely in front of a hull's facet.
 CLEARLY = 1e-6
 
@@ -251,13 +253,14 @@ def _lookup_run(s, points, values, result):
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
         zone = _zone_of(boxes, box_zones, x, y, z)
-        near = zone == last_zone and _is_near(zones, zone, x, y, z, u, v, w)
-        last_zone, u, v, w = zone, x, y, z
-        if near and last >= 0:
+        if last >= 0 and zone == last_zone:
             share = _weights(cells, last, x, y, z)
             if min(min(share[0], share[1]), min(share[2], share[3])) >= 0:
+                u, v, w = x, y, z
                 _mix(values, links, last, 4, share, result, i)
                 continue
+        near = zone == last_zone and _is_near(zones, zone, x, y, z, u, v, w)
+        last_zone, u, v, w = zone, x, y, z
         if not _is_finite(x, y, z):
             result[i] = np.nan
             last_zone = -1
@@ -291,16 +294,26 @@ def _mix(values, numbers, row, first, share, result, i):
 
 
 @njit(parallel=True, **OPTIONS)
-def locate_all(s, points, start, probes, weights, cells):
-    """Fills probes, weights (q, 4) and cells (q,) of points (q, 3); `start` (q,) or (0,)."""
+def _locate_runs(s, points, start, probes, weights, cells):
     for run in prange((len(points) + RUN - 1) // RUN):
         i, j = run * RUN, (run + 1) * RUN
         _locate_run(s, points[i:j], start[i:j], probes[i:j], weights[i:j], cells[i:j])
 
 
 @njit(parallel=True, **OPTIONS)
-def lookup_all(s, points, values, result):
-    """Fills `result` (q, c) with the mix of `values` (n, c), of the same type."""
+def _lookup_runs(s, points, values, result):
     for run in prange((len(points) + RUN - 1) // RUN):
         i, j = run * RUN, (run + 1) * RUN
         _lookup_run(s, points[i:j], values, result[i:j])
+
+
+def locate_all(s, points, start, probes, weights, cells):
+    """Fills probes, weights (q, 4) and cells (q,) of points (q, 3); `start` (q,) or (0,)."""
+    with parallel_chunksize(RUNS):
+        _locate_runs(s, points, start, probes, weights, cells)
+
+
+def lookup_all(s, points, values, result):
+    """Fills `result` (q, c) with the mix of `values` (n, c), of the same type."""
+    with parallel_chunksize(RUNS):
+        _lookup_runs(s, points, values, result)

@@ -98,7 +98,7 @@ def _listed(numbers: NDArray[np.integer]) -> NDArray[np.float64]:
 def _cells(space: ProbeSpace) -> NDArray[np.float64]:
     rows = np.concatenate([space.inverses, space.origins[:, :, None]], axis=2)
     tables = np.stack([space.neighbours, space.corners], axis=1).astype(np.float64)
-    return np.concatenate([rows, tables], axis=1).reshape(-1, 4)
+    return np.asarray(np.concatenate([rows, tables], axis=1).reshape(-1, 4), np.float64)
 
 
 def _facets(space: ProbeSpace) -> NDArray[np.float64]:

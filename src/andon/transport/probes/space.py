@@ -96,7 +96,7 @@ class ProbeSpace:
             )
         self.origins = np.ascontiguousarray(at[:, 3])
         edges = at[:, :3] - at[:, 3:]
-        self.inverses = np.linalg.inv(edges.transpose(0, 2, 1))
+        self.inverses: Float = np.asarray(np.linalg.inv(edges.transpose(0, 2, 1)), np.float64)
 
     def _compile_facets(self) -> None:
         a, b, c = (self.positions[self.facets[:, i]] for i in range(3))
@@ -186,12 +186,15 @@ class ProbeSpace:
         _numba().lookup_all(self._packed, at, flat, result)
         return result.reshape(len(at), *values.shape[1:])
 
-    def mixed(self, mix: Mix, values: NDArray[np.floating], /) -> NDArray[np.floating]:
-        """(q, …) the mix of `values` (n, …), one of each probe: any unit, any linear quantity."""
-        weights = mix.weights.reshape(*mix.weights.shape, *[1] * (values.ndim - 1))
-        result = weights[:, 0] * values[mix.probes[:, 0]]
-        for corner in range(1, 4):
-            result = result + weights[:, corner] * values[mix.probes[:, corner]]
+    def mixed(self, mix: Mix, values: NDArray[np.floating], /) -> Float:
+        """(q, …) the mix of `values` (n, …), one of each probe: any unit, any linear quantity.
+
+        Of any number of probes a point: 4 as `locate` gives them, 36 where walls hide some.
+        """
+        shape = values.shape[1:]
+        result = np.zeros((len(mix.probes), *shape))
+        for probes, weights in zip(mix.probes.T, mix.weights.T, strict=True):
+            result += weights.reshape(-1, *[1] * len(shape)) * values[probes]
         return result
 
 

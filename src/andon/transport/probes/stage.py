@@ -1,7 +1,8 @@
 """Light of probes on the GPU: a picture of it, drawn where virtual objects are.
 
 A pass of its own, unlike direct light: a software rasteriser pays for both sides of a branch in
-every pixel, and a pass can be kept to the rectangles of the objects. A frame without such objects
+every pixel, and a pass can be kept to the rectangles of the objects. Its picture is kept, too:
+camera and probes stand still, so that only what moves changes it. A frame without such objects
 has no pass, and its shaders nothing of this.
 """
 
@@ -111,7 +112,7 @@ class ProbePicture:
 
     Attributes
     ----------
-    lux : rgba32float, illuminance in lux in the objects' rectangles; elsewhere 0.
+    lux : rgba32float, illuminance in lux where it was drawn, and kept since; elsewhere 0.
     """
 
     def __init__(
@@ -132,9 +133,14 @@ class ProbePicture:
         )
 
     def encode(self, encoder: Any, rectangles: Sequence[Rectangle]) -> None:
-        """Records the drawing within (x, y, width, height) in pixels, which may overlap."""
+        """Records the drawing within (x, y, width, height) in pixels, which may overlap.
+
+        The rest stays as it is: at first 0.
+        """
+        if not rectangles:
+            return
         render = encoder.begin_render_pass(
-            label=self._pass.label, color_attachments=[color_attachment(self.lux.view)]
+            label=self._pass.label, color_attachments=[color_attachment(self.lux.view, load=True)]
         )
         render.set_pipeline(self._pass.pipeline)
         render.set_bind_group(0, self._pass.groups[0].group)

@@ -70,11 +70,11 @@ fn probe_lux(position: vec3f, normal: vec3f) -> vec3f {
     share += own;
     light += (own + PROBE_LEAST * mix.weights[k]) * vec4f(irradiance(mix.probes[k], normal), 1.0);
   }
-  let helped = 1.0 - share / PROBE_ENOUGH;
-  if (helped > 0.0) {
-    for (var k = 0; k < 4; k++) {
-      light += helped * mix.weights[k] * lent(mix.probes[k], position, normal);
-    }
+  // As a loop whose end depends on the pixel, it costs one step where nobody needs it.
+  let helped = max(1.0 - share / PROBE_ENOUGH, 0.0);
+  let last = select(0, 4, helped > 0.0);
+  for (var k = 0; k < last; k++) {
+    light += helped * mix.weights[k] * lent(mix.probes[k], position, normal);
   }
   return max(light.xyz / light.w, vec3f(0.0));
 }

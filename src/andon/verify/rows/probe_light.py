@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from andon.composite.model import Ambient
 from andon.engines.prepared import Prepared
 from andon.engines.probes import SceneProbes
-from andon.harmonics import deringed, irradiance
+from andon.harmonics import irradiance
 from andon.pipeline import EngineName, Renderer
 from andon.quantities import CameraFrame, Geometry, Material
 from andon.spaces import View, look_at
@@ -22,7 +22,7 @@ from andon.surface.model import ObjectInfo
 from andon.surface.objects import joined
 from andon.transport.probes.cells import build_cells
 from andon.transport.probes.hidden import Walls, hidden_mix, walls_of
-from andon.transport.probes.light import ProbeLight
+from andon.transport.probes.light import ProbeLight, probe_light
 from andon.transport.probes.space import Mix, ProbeSpace
 from andon.transport.probes.visibility import visible
 from andon.verify.probe_rooms import (
@@ -104,7 +104,7 @@ def leaks_on_surfaces(method: Method) -> float:
             lit_lux = np.maximum(irradiance(truth, lit_normals), 0).mean()
             points, normals = surfaces_of_dark_room(thickness, POINTS)
             mix = _weights(method, room, walls, space.locate(points), points, normals)
-            mixed = np.einsum("qj,qjkc->qkc", mix.weights, coefficients[mix.probes])
+            mixed = space.mixed(mix, coefficients)
             leaked = np.maximum(irradiance(mixed, normals), 0).mean()
             worst = max(worst, 100 * float(leaked / lit_lux))
     return worst
@@ -137,7 +137,7 @@ def leaks_in(
 
     def looked_up(how: Method, points: Float, n: Float) -> Float:
         mix = _weights(how, room, walls, space.locate(points), points, n)
-        mixed = np.einsum("qj,qjkc->qkc", mix.weights, coefficients[mix.probes])
+        mixed = space.mixed(mix, coefficients)
         return np.maximum(irradiance(mixed, n), 0)
 
     true_lux = np.maximum(irradiance(truth, normals[0]), 0)
@@ -169,11 +169,7 @@ def _balls() -> tuple[Geometry, tuple[ObjectInfo, ...]]:
 def _coloured_light() -> ProbeLight:
     steps = np.linspace(-1.3, 1.3, 4)
     places = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
-    volume = volume_of(coloured_room(), places)
-    cells = build_cells(volume.positions, volume.zones)
-    volume = replace(volume, cells=cells)
-    light = deringed(volume.states["default"])
-    return ProbeLight(ProbeSpace(volume), light, walls_of(volume, cells))
+    return probe_light(volume_of(coloured_room(), places))
 
 
 def ball_setting(

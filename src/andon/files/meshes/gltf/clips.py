@@ -105,6 +105,8 @@ class _Reader:
         taken: set[tuple[int, str]] = set()
         most = len(self._document.root.list_of("nodes")) - 1
         samplers = entry.at("samplers").elements()
+        if not samplers:
+            raise entry.error("must have samplers, has none")
         for channel in entry.at("channels").elements():
             target = channel.at("target")
             path, node = target.at("path").text(), target.get("node")

@@ -10,21 +10,22 @@ filament   E/π as a polynomial                  `IndirectLight`              on
 csv        luminance, all bands                 tables                       one or all
 ========== ==================================== ============================ =================
 
-Everything but CSV has bands 0 to 2 and leaves the others out, as those programs do. Nothing is
-windowed: who wants no dark rings derings first (`andon.harmonics`). Numbers are in cd/m², or
-relative to a white that the caller names.
+Everything but CSV has bands 0 to 2 and leaves the others out, as those programs do; the pictures of
+gltf show all. `exported_lights` gives what frames show: each probe smoothed as little as keeps its
+irradiance from going negative, with all bands and with those that the format has; between probes,
+those that walls hide from the point left out. The writers take any light as it is. Numbers are in
+cd/m², or relative to a white that the caller names.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-
+from andon.transport.probes.export.chosen import exported_lights
 from andon.transport.probes.export.filament import filament_text
 from andon.transport.probes.export.image_based import image_based_glb
 from andon.transport.probes.export.model import (
+    Export,
     ExportUnit,
-    ProbeLight,
+    PlacedLight,
     chosen_probe,
     probe_lights,
 )
@@ -36,9 +37,10 @@ __all__ = [
     "EXPORTS",
     "Export",
     "ExportUnit",
-    "ProbeLight",
+    "PlacedLight",
     "chosen_probe",
     "csv_text",
+    "exported_lights",
     "filament_text",
     "image_based_glb",
     "probe_lights",
@@ -47,18 +49,10 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True)
-class Export:
-    """A format: the `suffix` of its files, and the function that gives their bytes."""
-
-    suffix: str
-    write: Callable[[Sequence[ProbeLight], ExportUnit], bytes]
-
-
 EXPORTS = {
     "three": Export(".json", three_json),
     "gltf": Export(".glb", image_based_glb),
     "unity": Export(".json", unity_json),
     "filament": Export(".txt", filament_text),
-    "csv": Export(".csv", csv_text),
+    "csv": Export(".csv", csv_text, cuts_bands=False),
 }

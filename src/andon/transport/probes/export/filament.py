@@ -10,12 +10,12 @@ from collections.abc import Sequence
 
 from andon.errors import InputError
 from andon.harmonics.conventions import cmgen_text
-from andon.transport.probes.export.model import ExportUnit, ProbeLight
+from andon.transport.probes.export.model import ExportUnit, PlacedLight
 
 __all__ = ["filament_text"]
 
 
-def filament_text(lights: Sequence[ProbeLight], unit: ExportUnit) -> bytes:
+def filament_text(lights: Sequence[PlacedLight], unit: ExportUnit) -> bytes:
     """The text of one probe. Raises `InputError` for several: the format has no place for them."""
     if len(lights) != 1:
         raise InputError(

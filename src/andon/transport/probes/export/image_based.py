@@ -33,7 +33,7 @@ from andon.files.volumes.glb import GlbArrays
 from andon.harmonics import basis, cube_directions, order_of
 from andon.harmonics.conventions import to_gltf
 from andon.responses import srgb_encode
-from andon.transport.probes.export.model import ExportUnit, ProbeLight
+from andon.transport.probes.export.model import ExportUnit, PlacedLight
 
 __all__ = ["MOST_LIGHTS", "band_factors", "image_based_glb"]
 
@@ -49,7 +49,7 @@ MOST_LIGHTS = 1000
 NODES = 256
 
 
-def image_based_glb(lights: Sequence[ProbeLight], unit: ExportUnit) -> bytes:
+def image_based_glb(lights: Sequence[PlacedLight], unit: ExportUnit) -> bytes:
     """A GLB file without geometry: scene i has the light of probe i, and a node where it stands."""
     if len(lights) > MOST_LIGHTS:
         raise InputError(
@@ -79,7 +79,7 @@ def image_based_glb(lights: Sequence[ProbeLight], unit: ExportUnit) -> bytes:
 
 
 def _light(
-    light: ProbeLight, unit: ExportUnit, arrays: GlbArrays, images: list[dict[str, Any]]
+    light: PlacedLight, unit: ExportUnit, arrays: GlbArrays, images: list[dict[str, Any]]
 ) -> dict[str, Any]:
     coefficients = unit.scale * light.coefficients
     levels = [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,13 +12,13 @@ from andon.errors import InputError, nearest_name
 from andon.files.volumes import ProbeVolume
 from andon.quantities import Photometry
 
-__all__ = ["ExportUnit", "ProbeLight", "chosen_probe", "probe_lights"]
+__all__ = ["Export", "ExportUnit", "PlacedLight", "chosen_probe", "probe_lights"]
 
 Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class ProbeLight:
+class PlacedLight:
     """Light at one place: `name`, `position_m` (3,), `coefficients` (k, 3) in cd/m²."""
 
     name: str
@@ -58,10 +58,26 @@ class ExportUnit:
         return f"cd/m² ({self.photometry})"
 
 
-def probe_lights(volume: ProbeVolume, coefficients: Float) -> tuple[ProbeLight, ...]:
+@dataclass(frozen=True)
+class Export:
+    """A format.
+
+    Attributes
+    ----------
+    suffix : of its files.
+    write : gives their bytes.
+    cuts_bands : bands above 2 are left out.
+    """
+
+    suffix: str
+    write: Callable[[Sequence[PlacedLight], ExportUnit], bytes]
+    cuts_bands: bool = True
+
+
+def probe_lights(volume: ProbeVolume, coefficients: Float) -> tuple[PlacedLight, ...]:
     """Every probe of a volume with its light (n, k, 3) of one state."""
     return tuple(
-        ProbeLight(name, position, light)
+        PlacedLight(name, position, light)
         for name, position, light in zip(volume.names, volume.positions, coefficients, strict=True)
     )
 

@@ -7,12 +7,12 @@ import io
 from collections.abc import Sequence
 
 from andon.harmonics import order_of
-from andon.transport.probes.export.model import ExportUnit, ProbeLight
+from andon.transport.probes.export.model import ExportUnit, PlacedLight
 
 __all__ = ["csv_text"]
 
 
-def csv_text(lights: Sequence[ProbeLight], unit: ExportUnit) -> bytes:
+def csv_text(lights: Sequence[PlacedLight], unit: ExportUnit) -> bytes:
     """Name, position in metres, and all coefficients with Andon's own meaning and order."""
     suffix = "cd_m2" if unit.white_cd_m2 is None else f"per_{unit.white_cd_m2:g}_cd_m2"
     if unit.photometry == "relative":

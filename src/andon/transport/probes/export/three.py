@@ -14,7 +14,7 @@ from typing import Any
 from uuid import NAMESPACE_OID, uuid5
 
 from andon.harmonics.conventions import to_three
-from andon.transport.probes.export.model import ExportUnit, ProbeLight
+from andon.transport.probes.export.model import ExportUnit, PlacedLight
 
 __all__ = ["three_json"]
 
@@ -22,7 +22,7 @@ __all__ = ["three_json"]
 FORMAT_VERSION = 4.6
 
 
-def three_json(lights: Sequence[ProbeLight], unit: ExportUnit) -> bytes:
+def three_json(lights: Sequence[PlacedLight], unit: ExportUnit) -> bytes:
     """The file for ``ObjectLoader``: a `LightProbe`, or of several a `Group` that is not visible.
 
     Its shader gives π·L for luminance L from all sides, and a white Lambert material then L: with
@@ -34,7 +34,7 @@ def three_json(lights: Sequence[ProbeLight], unit: ExportUnit) -> bytes:
     return (json.dumps({"metadata": metadata, "object": top}, ensure_ascii=False) + "\n").encode()
 
 
-def _probe(number: int, light: ProbeLight, unit: ExportUnit) -> dict[str, Any]:
+def _probe(number: int, light: PlacedLight, unit: ExportUnit) -> dict[str, Any]:
     x, y, z = light.position_m.tolist()
     return {
         "uuid": _uuid(f"probe {number} {light.name}"),

@@ -10,12 +10,12 @@ import json
 from collections.abc import Sequence
 
 from andon.harmonics.conventions import to_unity
-from andon.transport.probes.export.model import ExportUnit, ProbeLight
+from andon.transport.probes.export.model import ExportUnit, PlacedLight
 
 __all__ = ["unity_json"]
 
 
-def unity_json(lights: Sequence[ProbeLight], unit: ExportUnit) -> bytes:
+def unity_json(lights: Sequence[PlacedLight], unit: ExportUnit) -> bytes:
     """The file: what its numbers mean, and `probes`.
 
     ``probes[i].sh`` has 27 numbers, nine of red, nine of green, nine of blue, as

@@ -292,14 +292,6 @@ def test_a_second_state_is_added(tmp_path):
     assert bake_file(night, engine="reference").states == ("day", "night")
 
 
-def test_a_volume_of_other_probes_is_replaced(tmp_path):
-    bake_file(lamp_room(tmp_path, probes={"state": "day"}), engine="reference")
-    place = {"place": [{"position": [0, 1, 0]}], "placement": {"kind": "hand"}, "state": "night"}
-    written = bake_file(lamp_room(tmp_path, probes=place), engine="reference")
-    assert written.states == ("night",)
-    assert written.replaced
-
-
 def test_outputs_that_cannot_be_are_refused_first(tmp_path, monkeypatch):
     calls = counted(monkeypatch)
     for volume, rule in (("p.bin", "must end in .glb"), ("no/p.glb", "does not exist")):

@@ -22,6 +22,7 @@ from andon.engines.prepared import Prepared
 from andon.errors import InputError, MachineError
 from andon.harmonics.cubes import face_directions
 from andon.lamps import HemisphereLamp, Lamp, SkyLamp
+from andon.lamps.model import LIGHT_FIELDS
 from andon.quantities import CameraFrame, Geometry
 from andon.spaces import View, pinhole_view
 from andon.surface import reference as surface
@@ -87,6 +88,7 @@ class CubeSetting:
     lighting : all other light.
     prepared : where it is from.
     emits : something gives light of itself: a material, or the sky.
+    takes_away : some light is negative: sources of E0 that are gone, or hidden.
     """
 
     surface: SurfaceModel
@@ -95,6 +97,7 @@ class CubeSetting:
     lighting: Lighting
     prepared: Prepared
     emits: bool
+    takes_away: bool = False
 
     @property
     def geometry(self) -> tuple[Geometry, ...]:
@@ -157,7 +160,13 @@ def cube_setting(scene: Scene, prepared: Prepared, /) -> CubeSetting:
         Lighting(lux, photograph, sky),
         prepared,
         emits,
+        any(_is_negative(lamp) for lamp in lamps),
     )
+
+
+def _is_negative(lamp: Lamp) -> bool:
+    light = (getattr(lamp, key, None) for key in LIGHT_FIELDS)
+    return any(bool((np.asarray(values) < 0).any()) for values in light if values is not None)
 
 
 def cube_engine(setting: CubeSetting, size: int, /, engine: str = "auto") -> CubeEngine:

@@ -49,6 +49,7 @@ def corner(folder, seconds, **table):
         ({"animation_speed": 0.5}, {0.5: 0.25, 1: 0.5, 2.5: 0.25}),
         ({"animation_speed": 0.0}, {0: 0, 5.3: 0}),
         ({"animation_speed": -1.0}, {0.25: 0.75, 1.25: 0.75}),
+        ({"animation_speed": -1.0, "animation_start_seconds": 2.0}, {0: 1, 2: 1, 2.25: 0.75}),
         ({"animation_speed": -1.0, "loop": False}, {0: 1, 0.25: 0.75, 4: 0}),
     ],
 )

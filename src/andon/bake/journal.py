@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import hashlib
 import io
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -77,13 +76,11 @@ class Journal:
         write_bytes(self._path(key), _packed(result))
 
     def clear(self) -> None:
-        """Throws all results away, and the folder unless somebody put other files there."""
-        if self.folder is None or not self.folder.is_dir():
+        """Throws all results away; what somebody else removes meanwhile is gone as well."""
+        if self.folder is None:
             return
         for path in self.folder.glob(f"*{SUFFIX}"):
             path.unlink(missing_ok=True)
-        if not any(self.folder.iterdir()):
-            shutil.rmtree(self.folder, ignore_errors=True)
 
     def _make(self) -> None:
         assert self.folder is not None

@@ -16,6 +16,8 @@ Progress = Callable[[int, int, str], None]
 
 # A task is tried this many times before it is reported.
 ATTEMPTS = 3
+# Faults of this program, which no second try mends.
+OURS = (TypeError, AttributeError, NameError, LookupError, AssertionError, NotImplementedError)
 # Failed tasks that a message names.
 SHOWN = 3
 
@@ -44,19 +46,20 @@ class Runner:
     ) -> list[Result]:
         """The results of `work` for the probes `indices`, each kept by its `key`.
 
-        Raises `MachineError` after all others are done for those that failed three times.
+        Raises `MachineError` after all others are done for those that failed three times, from
+        the last of their exceptions; at once `InputError`, and exceptions that are our own faults.
         """
         results: list[Result] = []
-        failed: list[str] = []
+        failed: list[tuple[str, Exception]] = []
         for index in indices:
             name = key(index)
             result: Result | None = self.journal.get(name)
             if result is None:
-                result, fault = self._tried(index, work)
-                if result is None:
-                    failed.append(f"{self.names[index]} ({fault})")
+                tried = self._tried(index, work)
+                if isinstance(tried, Exception):
+                    failed.append((self.names[index], tried))
                 else:
-                    self.journal.put(name, result)
+                    self.journal.put(name, result := tried)
             if result is not None:
                 results.append(result)
             self._done += 1
@@ -66,27 +69,29 @@ class Runner:
             self._refuse(failed, len(indices))
         return results
 
-    def _tried(self, index: int, work: Callable[[int], Result]) -> tuple[Result | None, str]:
-        fault = ""
+    def _tried(self, index: int, work: Callable[[int], Result]) -> Result | Exception:
+        """What `work` gives; the last exception where it fails each time."""
+        fault: Exception = MachineError("was not tried")
         for _ in range(ATTEMPTS):
             start = perf_counter()
             try:
                 result = work(index)
-            except InputError:  # trying again would not make a file better
+            except (InputError, *OURS):  # trying again would not make a file better, nor us
                 raise
             except Exception as error:
-                fault = f"{type(error).__name__}: {error}"
+                fault = error
                 continue
             self.computed += 1
             self.seconds += perf_counter() - start
-            return result, ""
-        return None, fault
+            return result
+        return fault
 
-    def _refuse(self, failed: list[str], count: int) -> NoReturn:
-        names = ", ".join(failed[:SHOWN]) + (", …" if len(failed) > SHOWN else "")
+    def _refuse(self, failed: list[tuple[str, Exception]], count: int) -> NoReturn:
+        words = [f"{name} ({type(fault).__name__}: {fault})" for name, fault in failed[:SHOWN]]
+        names = ", ".join(words) + (", …" if len(failed) > SHOWN else "")
         folder = self.journal.folder
         kept = "" if folder is None else f"the others are kept in {folder}: "
         raise MachineError(
             f"{len(failed)} of {count} probes failed {ATTEMPTS} times: {names}",
             remedy=f"{kept}bake again, or leave these probes out",
-        )
+        ) from failed[-1][1]

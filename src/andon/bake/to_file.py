@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from andon.bake.bake import Baked, bake_probes
+from andon.bake.bake import DEFAULT_STATE, bake_probes
 from andon.bake.journal import Journal
+from andon.bake.lock import locked
+from andon.bake.panoramas import check_panoramas
 from andon.bake.report import BakeReport
 from andon.bake.runner import Progress
+from andon.bake.states import check_states, joined, planned
 from andon.engines.reading import read_pictures, view_of
 from andon.errors import InputError
 from andon.files.atomic import write_bytes
-from andon.files.volumes import ProbeVolume, read_volume, rounded, write_volume
+from andon.files.volumes import write_volume
 from andon.quantities import Geometry
 from andon.scene import Scene
+from andon.scene.probes import Probes
 from andon.surface.load import load_surface
 from andon.surface.still import still_geometry
 from andon.transport.probes.placement import Placed, place_probes
-from andon.transport.probes.states import with_state
 
 __all__ = ["Written", "bake_file", "placed_in", "scene_geometry"]
 
@@ -34,14 +35,15 @@ class Written:
     path : the file.
     report : of the bake.
     states : all of the file.
-    replaced : there was a volume of other probes, which is gone.
+    replaced : in what the probes of the volume that was there differed; it is gone. Empty: there
+        was none, or it had the same.
     warnings : of the placement.
     """
 
     path: Path
     report: BakeReport
     states: tuple[str, ...]
-    replaced: bool
+    replaced: tuple[str, ...]
     warnings: tuple[str, ...]
 
 
@@ -51,17 +53,40 @@ def bake_file(
     *,
     engine: str = "auto",
     fresh: bool = False,
+    replaces: bool = False,
     progress: Progress | None = None,
 ) -> Written:
     """Places and bakes the probes of `scene`, and writes the volume that it names.
 
-    A volume of the same probes that is there keeps its other states; one of other probes is
-    replaced. Results wait in ``<volume>.bake`` beside it until it is written; with `fresh` those
-    of an earlier bake are thrown away.
+    A volume of the same probes that is there keeps its other states; with other probes (places,
+    order, zones) it is refused before anything is captured if it has other states, unless
+    `replaces`, and is replaced if it has not. Results wait in ``<volume>.bake`` beside it until it
+    is written; with `fresh` those of an earlier bake are thrown away.
 
-    Raises `InputError` and `MachineError` as `bake_probes` does, and where the volume cannot be
-    written; what is there stays as it was then.
+    Raises `InputError` and `MachineError` as `bake_probes` does, where another bake of the volume
+    is running, and where it cannot be written; what is there stays as it was then.
     """
+    probes, path = _target(scene)
+    placed = placed_in(scene)
+    check_panoramas(scene, placed)
+    plan = planned(scene, probes, placed, probes.state or DEFAULT_STATE)
+    folder = path.with_name(path.name + ".bake")
+    with locked(folder):
+        check_states(path, plan, replaces=replaces)
+        _check_folder(folder)
+        journal = Journal(folder)
+        if fresh:
+            journal.clear()
+        baked = bake_probes(scene, placed, engine=engine, progress=progress, folder=folder)
+        # Once more: bakes wait for each other, but other programs may have put a file there.
+        replaced = check_states(path, baked.volume, replaces=replaces)
+        volume = joined(path, baked.volume)
+        write_volume(path, volume)
+        journal.clear()
+    return Written(path, baked.report, tuple(volume.states), replaced, placed.warnings)
+
+
+def _target(scene: Scene) -> tuple[Probes, Path]:
     if scene.probes is None:
         raise InputError("needs a [probes] table", file=scene.file, remedy="add probes.volume")
     path = scene.path(scene.probes.volume, "probes.volume")
@@ -76,25 +101,12 @@ def bake_file(
             field="probes.volume",
             remedy="make it",
         )
-    folder = path.with_name(path.name + ".bake")
-    _check_folder(folder)
-    journal = Journal(folder)
-    if fresh:
-        journal.clear()
-    placed = placed_in(scene)
-    baked = bake_probes(scene, placed, engine=engine, progress=progress, folder=folder)
-    volume, replaced = _joined(path, baked)
-    write_volume(path, volume)
-    journal.clear()
-    return Written(path, baked.report, tuple(volume.states), replaced, placed.warnings)
+    return scene.probes, path
 
 
 def _check_folder(folder: Path) -> None:
     """A full or read-only disk is known before the first hour, not after it."""
-    if not folder.is_dir():
-        Journal(folder).put("0", {"writable": np.zeros(1)})
-    else:
-        write_bytes(folder / "0.probe", b"writable")
+    write_bytes(folder / "writable", b"writable").unlink(missing_ok=True)
 
 
 def placed_in(scene: Scene, /) -> Placed:
@@ -112,32 +124,3 @@ def scene_geometry(scene: Scene, /) -> Geometry:
     pictures = read_pictures(scene)
     views = {name: view_of(scene, name, picture.shape) for name, picture in pictures.items()}
     return still_geometry(scene, real=load_surface(scene, views).real)
-
-
-def _joined(path: Path, baked: Baked) -> tuple[ProbeVolume, bool]:
-    """The volume with the other states of the file, if its probes are the same."""
-    volume = baked.volume
-    if not path.exists():
-        return volume, False
-    old = read_volume(path)
-    if not _same_probes(old, rounded(volume)):
-        return volume, True
-    for name, coefficients in volume.states.items():
-        old = with_state(old, name, coefficients)
-    return replace(volume, states=old.states), False
-
-
-def _same_probes(old: ProbeVolume, new: ProbeVolume) -> bool:
-    pairs = [
-        (old.positions, new.positions),
-        (old.capture_positions, new.capture_positions),
-        (old.ranges_m, new.ranges_m),
-    ]
-    words = [
-        (old.names, new.names),
-        (old.roles, new.roles),
-        (old.order, new.order),
-        (old.photometry, new.photometry),
-        ([zone.name for zone in old.zones], [zone.name for zone in new.zones]),
-    ]
-    return all(np.array_equal(a, b) for a, b in pairs) and all(a == b for a, b in words)

@@ -7,12 +7,18 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from andon.errors import InputError
+from andon.errors import AndonError, InputError
 
 if TYPE_CHECKING:
     from andon.pipeline import Report
 
-__all__ = ["check_writable", "note", "print_report", "printable"]
+__all__ = ["Interrupted", "check_writable", "note", "print_report", "printable"]
+
+
+class Interrupted(AndonError):
+    """Somebody stopped a command that has something to say of what is left."""
+
+    exit_code = 130
 
 
 def note(message: str) -> None:

@@ -7,16 +7,20 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from andon.cli.console import note
+from andon.cli.console import Interrupted, note
 from andon.cli.options import EngineOption
+from andon.errors import InputError
 
 if TYPE_CHECKING:
     from andon.bake import Written
+    from andon.scene import Scene
 
 __all__ = ["bake"]
 
 # Names that a line lists before it goes on with "…".
 SHOWN_NAMES = 5
+# As in scene files.
+LONGEST_NAME = 200
 
 
 def bake(
@@ -29,32 +33,52 @@ def bake(
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Forget what an interrupted bake has left.")
     ] = False,
+    replace: Annotated[
+        bool,
+        typer.Option("--replace", help="Other states of a volume with other probes may go."),
+    ] = False,
 ) -> None:
     """Capture the light at the probes of a scene, and write the volume that it names.
 
     A bake that was stopped goes on where it was. A second state (night) of the same probes is
-    added to the volume.
+    added to the volume: a scene file with the same [probes] and other lamps.
 
     Examples:
 
-        andon probes bake room.toml
+        andon probes bake basic.toml
 
-        andon probes bake room-at-night.toml --state night
+        andon probes bake basic-at-night.toml --state night
     """
     from andon.bake import bake_file
     from andon.scene import load_scene
 
-    loaded = load_scene(scene)
-    if state is not None and loaded.probes is not None:
-        probes = loaded.probes.model_copy(update={"state": state})
-        loaded = loaded.model_copy(update={"probes": probes})
-    with _Bar() as bar:
-        written = bake_file(loaded, engine=engine, fresh=fresh, progress=bar.show)
+    loaded = _in_state(load_scene(scene), state)
+    try:
+        with _Bar() as bar:
+            written = bake_file(
+                loaded, engine=engine, fresh=fresh, replaces=replace, progress=bar.show
+            )
+    except KeyboardInterrupt:
+        raise Interrupted("interrupted; run it again and it goes on") from None
     for warning in (*written.warnings, *_notes(written)):
         note(warning)
     _print(written)
     print(written.path)
     note(f"look at it: andon probes show {written.path}")
+
+
+def _in_state(scene: Scene, state: str | None) -> Scene:
+    """The scene whose probes.state is that one; None: its own."""
+    if state is None or scene.probes is None:
+        return scene
+    if not 1 <= len(state) <= LONGEST_NAME:
+        raise InputError(
+            f"must be a name of 1 to {LONGEST_NAME} characters, got {state[:40]!r}",
+            field="--state",
+            remedy="for example --state night",
+        )
+    probes = scene.probes.model_copy(update={"state": state})
+    return scene.model_copy(update={"probes": probes})
 
 
 class _Bar:
@@ -80,7 +104,7 @@ def _notes(written: Written) -> list[str]:
     report = written.report
     notes: list[str] = []
     if written.replaced:
-        notes.append("the volume that was there had other probes and is replaced")
+        notes.append(f"the volume that was there is replaced: it had {'; '.join(written.replaced)}")
     if report.in_walls:
         notes.append(
             f"{len(report.in_walls)} of {report.probes} probes see mostly backs of surfaces, as "
@@ -98,6 +122,11 @@ def _notes(written: Written) -> list[str]:
         )
     if report.negative:
         notes.append(f"{report.negative} values of panoramas are negative and count as 0")
+    if report.black:
+        notes.append(
+            f"in {report.black} channels of probes more light is taken away than there is: they "
+            "are black; check the light of ambient.source"
+        )
     if report.unphotographed_share > 0:
         notes.append(
             f"{report.unphotographed_share:.1%} of the photographed surface that probes see is in "

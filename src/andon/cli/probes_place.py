@@ -95,7 +95,8 @@ def _facts(placed: Placed) -> list[tuple[str, str]]:
         (
             "left out",
             f"{tally.merged} at the place of another, {tally.dropped_in_walls} in walls, "
-            f"{tally.hidden} behind one, {tally.crowded} too near; {tally.moved} moved",
+            f"{tally.hidden} behind one, {tally.too_near} too near to a surface, {tally.crowded} "
+            "to a probe",
         ),
     ]
     return facts

@@ -102,7 +102,7 @@ class SceneObject(Placed):
     )
     animation_start_seconds: float = Field(
         default=0.0,
-        description="Session time of its beginning; before, its first pose is held.",
+        description="Session time at which it starts; before, the pose it starts with is held.",
     )
     animation_speed: float = Field(
         default=1.0,

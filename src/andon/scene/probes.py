@@ -131,8 +131,8 @@ class Placement(Table):
     offset_m: NonNegative = Field(
         default=0.1,
         description="Of kind vertices: distance from the surface, along its normal, metres. "
-        "Lattices and random places leave this much to the walls of their box, and random ones "
-        "to surfaces.",
+        "Lattices and random places leave this much to the walls of their box and to surfaces: "
+        "what is nearer is moved away or left out.",
     )
     role: ProbeRole = Field(
         default="general",

@@ -20,7 +20,7 @@ from andon.surface.depth import DepthEncoding, depth_from_raw
 from andon.surface.meshes import check_textures, read_geometry, rest_note
 from andon.surface.model import ShadowBias, SurfaceModel
 from andon.surface.normals import normals_from_depth
-from andon.surface.objects import load_objects, objects_bias
+from andon.surface.objects import load_objects
 from andon.surface.occluder import decimated
 from andon.surface.triangulate import thickened, triangulate_depth
 
@@ -79,7 +79,6 @@ def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
         casters=objects.casters,
         objects_table=objects.objects_table,
         movers=objects.movers,
-        bias=objects_bias(model.bias, objects),
         notes=(*model.notes, *objects.notes),
     )
 

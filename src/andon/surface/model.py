@@ -28,8 +28,7 @@ class ShadowBias:
     ----------
     real_m : on the real surface: what decimation and the noise of a depth image leave between
         surface and occluder. Shadows thinner than this, at contacts, are lost.
-    object_m : on virtual objects, whose occluder is the object itself: float32 rounding, and of
-        smooth ones what their normals and their triangles differ by within a texel.
+    object_m : on virtual objects, whose occluder is the object itself: float32 rounding only.
     """
 
     real_m: float = 1e-3

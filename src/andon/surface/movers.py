@@ -25,9 +25,9 @@ class Play:
     Attributes
     ----------
     mesh, clip : what plays.
-    start_seconds : session time of its beginning; before, its first pose is held.
+    start_seconds : session time at which it starts; before, the pose that it starts with is held.
     speed : 1: as in the file; below 0: from its end backwards.
-    loop : begins again at its end; else its last pose is held.
+    loop : starts again when it is through; else the pose that it ends with is held.
     """
 
     mesh: AnimatedMesh
@@ -41,10 +41,9 @@ class Play:
         duration = self.clip.duration_seconds
         if duration <= 0:
             return 0.0
-        gone = max(0.0, time_seconds - self.start_seconds) * self.speed
-        if self.speed < 0:
-            gone += duration
-        return gone % duration if self.loop else min(max(gone, 0.0), duration)
+        gone = max(0.0, time_seconds - self.start_seconds) * abs(self.speed)
+        gone = gone % duration if self.loop else min(gone, duration)
+        return duration - gone if self.speed < 0 else gone
 
 
 class Mover:

@@ -120,10 +120,13 @@ def probe_mix(
     return mix if light.walls is None else hidden_mix(light.walls, mix, points, normals)
 
 
-def probe_illuminance(light: ProbeLight, points: Float, normals: Float, /) -> Float:
+def probe_illuminance(
+    light: ProbeLight, points: Float, normals: Float, /, *, signed: bool = False
+) -> Float:
     """Illuminance (q, 3) in lux at points (q, 3), metres, world, that face unit normals (q, 3).
 
-    Never negative; NaN for a point or a normal that is not finite.
+    Never negative, unless `signed`: of light that is the difference of two. NaN for a point or a
+    normal that is not finite.
     """
     lit = convolved(light.coefficients)
     order = order_of(lit.shape[1])
@@ -133,7 +136,7 @@ def probe_illuminance(light: ProbeLight, points: Float, normals: Float, /) -> Fl
         mix = probe_mix(light, points[part], normals[part])
         own = light.space.mixed(mix, lit)
         lux[part] = np.einsum("qkc,qk->qc", own, basis(normals[part], order))
-    return np.maximum(lux, 0)
+    return lux if signed else np.maximum(lux, 0)
 
 
 def probe_coefficients(light: ProbeLight, points: Float, /) -> Float:

@@ -20,6 +20,9 @@ random      in free space, by chance                         baselines; test poi
 Terms
     *Inside a wall* is what sees mostly backs of surfaces (`walls`). Probes of an author are kept
     there and named; generated ones are moved out or left out, and counted.
+    *Clear* is what no surface is nearer to than the offset (`clearance`): lattices and random
+    places are, places off vertices keep the offset to their own vertex only. Probes of an author
+    nearer than a centimetre are named.
     *Capture position*: where the six pictures are taken, while the light counts at the position.
     What is by hand is judged at the former.
 

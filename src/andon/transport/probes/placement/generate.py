@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.quantities import Geometry
 from andon.scene.probes import Placement
+from andon.transport.probes.placement.clearance import clear_of, nearest_within, off_surfaces
 from andon.transport.probes.placement.model import Tally
 from andon.transport.probes.placement.spread import Spread, spread
 from andon.transport.probes.placement.walls import WELD, Walls
@@ -26,6 +27,9 @@ LIFT = 1e-2
 TRIES_PER_PROBE = 200
 # Moved probes stay within this share of the lattice's smallest step of where they were.
 MOVE_SHARE = 0.45
+# Places off a vertex keep less than the offset where walls meet: 1/√3 of it in a corner of three.
+# Nearer than this share of it they are on another surface.
+VERTEX_SHARE = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +94,9 @@ def from_vertices(placement: Placement, walls: Walls, file: str) -> Generated:
     hidden = np.zeros(len(places), np.bool_)
     if placement.offset_m > 0:
         hidden = ~walls.sees(corners + normals * placement.offset_m * LIFT, places)
-    free = np.flatnonzero(~hidden)
+    least = VERTEX_SHARE * placement.offset_m
+    tight = ~hidden & (nearest_within(places, geometry, least).distance_m < least)
+    free = np.flatnonzero(~hidden & ~tight)
     judge = _Judge(walls)
     taken, crowded = spread(
         places[free],
@@ -104,7 +110,10 @@ def from_vertices(placement: Placement, walls: Walls, file: str) -> Generated:
         places[numbers],
         tuple(f"vertex-{number}" for number in numbers.tolist()),
         Tally(
-            hidden=int(np.count_nonzero(hidden)), dropped_in_walls=judge.refused, crowded=crowded
+            hidden=int(np.count_nonzero(hidden)),
+            dropped_in_walls=judge.refused,
+            too_near=int(np.count_nonzero(tight)),
+            crowded=crowded,
         ),
     )
 
@@ -114,12 +123,16 @@ class _Judge:
 
     def __init__(self, walls: Walls, clearance_m: float = 0.0) -> None:
         self._walls, self._clearance = walls, clearance_m
-        self.refused = 0
+        self.refused = self.too_near = 0
 
     def __call__(self, points: Float) -> NDArray[np.bool_]:
-        sight = self._walls.sight(points)
-        free = ~sight.buried & (sight.nearest_m >= self._clearance)
+        free = self._walls.is_free(points)
         self.refused += int(np.count_nonzero(~free))
+        if self._clearance > 0:
+            near = nearest_within(points[free], self._walls.geometry, self._clearance)
+            tight = near.distance_m < self._clearance
+            self.too_near += int(np.count_nonzero(tight))
+            free[free] = ~tight
         return free
 
 
@@ -143,7 +156,8 @@ def lattice(placement: Placement, walls: Walls, file: str) -> Generated:
     """Corners of equal boxes that fill the placement's box, less its margin.
 
     A place inside a wall is moved to the nearest free one that rays find in the box within half a
-    step; where there is none it is left out. Where no place at all is free, none is moved.
+    step, and one nearer to a surface than the margin away from it; where there is none it is left
+    out. Where no place at all is free, none is moved.
     """
     low, high = box_of(placement, walls.geometry, file)
     counts = _counts(placement, high - low - 2 * placement.offset_m)
@@ -159,8 +173,17 @@ def lattice(placement: Placement, walls: Walls, file: str) -> Generated:
     # Out of a box without thickness a place may move, or it could not move at all.
     flat = high <= low
     box = np.where(flat, -np.inf, low), np.where(flat, np.inf, high)
-    places, kept, moved = _out_of_walls(points, walls, box, reach, placement.offset_m)
-    tally = Tally(moved=moved, dropped_in_walls=int(np.count_nonzero(~kept)))
+    off = off_surfaces(walls.geometry, points, placement.offset_m)
+    places, free = _out_of_walls(off, walls, box, reach, placement.offset_m)
+    kept, near = free.copy(), np.flatnonzero(free)
+    places[near], kept[near] = clear_of(walls.geometry, places[near], placement.offset_m)
+    gone = np.linalg.norm(places - points, axis=1)
+    kept[near] &= (gone[near] <= max(reach, placement.offset_m)) & walls.is_free(places[near])
+    tally = Tally(
+        moved=int(np.count_nonzero(kept & (gone > 0))),
+        dropped_in_walls=int(np.count_nonzero(~free)),
+        too_near=int(np.count_nonzero(free & ~kept)),
+    )
     return Generated(
         places[kept], tuple(n for n, keep in zip(names, kept, strict=True) if keep), tally
     )
@@ -183,11 +206,11 @@ def _steps(low: float, high: float, margin: float, count: int) -> Float:
 
 def _out_of_walls(
     points: Float, walls: Walls, box: tuple[Float, Float], reach_m: float, margin_m: float
-) -> tuple[Float, NDArray[np.bool_], int]:
-    """The points with those in walls moved out, which of them count, and how many moved."""
+) -> tuple[Float, NDArray[np.bool_]]:
+    """The points with those in walls moved out, and which of them are free."""
     kept = walls.is_free(points)
     if not kept.any():  # a surface that is inside out: the way out would lead out of the room
-        return points, kept, 0
+        return points.copy(), kept
     stuck = np.flatnonzero(~kept)
     ways = walls.ways_out(points[stuck], *box, margin_m)
     near = np.linalg.norm(ways, axis=1) <= reach_m  # not so where there is none: NaN
@@ -196,7 +219,7 @@ def _out_of_walls(
     places = points.copy()
     places[stuck[free]] = targets[free]
     kept[stuck[free]] = True
-    return places, kept, int(np.count_nonzero(free))
+    return places, kept
 
 
 def random_places(placement: Placement, walls: Walls, seed: int, file: str) -> Generated:
@@ -221,7 +244,11 @@ def random_places(placement: Placement, walls: Walls, seed: int, file: str) -> G
             break
     positions = np.concatenate(parts)
     names = tuple(f"random-{number}" for number in range(1, len(positions) + 1))
-    return Generated(positions, names, Tally(dropped_in_walls=judge.refused, crowded=crowded))
+    return Generated(positions, names, _counted(judge, crowded))
+
+
+def _counted(judge: _Judge, crowded: int) -> Tally:
+    return Tally(dropped_in_walls=judge.refused, too_near=judge.too_near, crowded=crowded)
 
 
 def _check_count(count: int, file: str, key: str, remedy: str, *, of: str = "placement") -> None:

@@ -42,17 +42,23 @@ class Tally:
     ----------
     merged : probes that lay where another one does, and are left out.
     in_walls : names of probes that are kept and lie inside walls: those that were placed by hand.
-    moved : generated probes that were taken out of a wall to the nearest free place.
+    near_walls : names of those placed by hand, not inside walls, that lie nearer to a surface than
+        a centimetre.
+    moved : generated probes that were taken out of a wall, or away from a surface.
     dropped_in_walls : generated probes with no free place near, and places inside walls that were
         passed over.
+    too_near : generated probes, and places passed over, that lie nearer to a surface than the
+        offset and have no place near that does not.
     hidden : places off a vertex that another wall hides from it, passed over.
     crowded : places nearer to a probe than the least distance, passed over.
     """
 
     merged: int = 0
     in_walls: tuple[str, ...] = ()
+    near_walls: tuple[str, ...] = ()
     moved: int = 0
     dropped_in_walls: int = 0
+    too_near: int = 0
     hidden: int = 0
     crowded: int = 0
 
@@ -63,7 +69,7 @@ class Placed:
 
     Attributes
     ----------
-    positions : (n, 3) where they count, metres, world.
+    positions : (n, 3) where they count, metres, world; as float32 holds them, as do files.
     capture_positions : (n, 3) where they are captured, metres, world.
     names : n, unique.
     roles : n.

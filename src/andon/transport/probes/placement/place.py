@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.volumes.model import ProbeRole
+from andon.files.volumes.rounded import in_single
 from andon.quantities import Geometry
 from andon.scene import Scene
 from andon.scene.probes import ProbePlace, Probes
+from andon.transport.probes.placement.clearance import nearest_within
 from andon.transport.probes.placement.generate import (
     MAX_PROBES,
     Generated,
@@ -25,6 +27,7 @@ from andon.transport.probes.placement.model import Panorama, Placed, Tally
 from andon.transport.probes.placement.nodes import from_nodes
 from andon.transport.probes.placement.spread import Spread, spread
 from andon.transport.probes.placement.walls import Walls, winding_faults
+from andon.transport.probes.placement.written import nearest_distances_m
 
 __all__ = ["place_probes"]
 
@@ -33,6 +36,8 @@ Float = NDArray[np.float64]
 # Probes nearer than this are one, metres: light does not differ over a millimetre, but the cells
 # between such probes are slivers.
 SAME_PLACE_M = 1e-3
+# Probes by hand nearer to a surface than this see little else in half of all directions, metres.
+NEAR_WALL_M = 0.01
 # Names that a warning lists before it goes on with "…".
 SHOWN_NAMES = 5
 
@@ -62,8 +67,8 @@ def place_probes(scene: Scene, geometry: Geometry, /) -> Placed:
     Raises
     ------
     InputError
-        where there is no [probes], no probe comes out, a file is at fault, or the kind of
-        placement is not built yet.
+        where there is no [probes], no probe comes out, a file is at fault, the kind of placement
+        is not built yet, or float32 does not tell the probes apart.
     """
     probes = _table(scene)
     walls = Walls(geometry)
@@ -75,10 +80,13 @@ def place_probes(scene: Scene, geometry: Geometry, /) -> Placed:
         raise _nothing(scene, probes, made.tally)
     if len(entries) > MAX_PROBES:
         raise InputError(f"more than {MAX_PROBES} probes", file=scene.file, field="probes")
+    _check_precision(entries, scene.file)
+    entries = [_in_file(entry) for entry in entries]
     kept = _apart(entries)
     left_out = [entries[index] for index in sorted(set(range(len(entries))) - set(kept))]
     entries = _uniquely_named(entries[index] for index in kept)
-    tally = replace(made.tally, merged=len(left_out), in_walls=_in_walls(entries, walls))
+    in_walls, near_walls = _at_walls(entries, walls)
+    tally = replace(made.tally, merged=len(left_out), in_walls=in_walls, near_walls=near_walls)
     return Placed(
         np.array([entry.position for entry in entries]),
         np.array([entry.capture_position for entry in entries]),
@@ -169,7 +177,7 @@ def _nothing(scene: Scene, probes: Probes, tally: Tally) -> InputError:
         )
     return InputError(
         f"no probe is left: {tally.dropped_in_walls} places lie inside walls, {tally.hidden} "
-        "behind one",
+        f"behind one, {tally.too_near} nearer to one than offset_m",
         file=scene.file,
         field="probes.placement",
         remedy="choose another box; or the surface is wound clockwise, and all of space is behind "
@@ -181,6 +189,34 @@ def _apart(entries: list[_Entry]) -> list[int]:
     """Numbers of the entries that do not lie where one before them does."""
     points = np.array([entry.position for entry in entries])
     return spread(points, Spread(SAME_PLACE_M), most=len(points))[0].tolist()
+
+
+def _in_file(entry: _Entry) -> _Entry:
+    """The entry where a volume's file will have it: what is captured and joined is what is read."""
+    return replace(
+        entry,
+        position=in_single(entry.position),
+        capture_position=in_single(entry.capture_position),
+    )
+
+
+def _check_precision(entries: list[_Entry], file: str) -> None:
+    """Refuses probes that are nearer to each other than float32 tells places apart there."""
+    points = np.array([entry.position for entry in entries])
+    farthest = float(np.abs(points).max())
+    precision = float(np.spacing(np.float32(farthest)))
+    if precision <= SAME_PLACE_M:
+        return
+    points = points[_apart(entries)]
+    nearest = float(nearest_distances_m(points).min()) if len(points) > 1 else np.inf
+    if nearest < precision:
+        raise InputError(
+            f"too far from the origin for float32: places of {farthest:.3g} m are {precision:.2g} "
+            f"m apart there, and probes {nearest:.2g} m",
+            file=file,
+            field="probes",
+            remedy="move the scene to the origin",
+        )
 
 
 def _uniquely_named(entries: Iterable[_Entry]) -> list[_Entry]:
@@ -200,13 +236,19 @@ def _uniquely_named(entries: Iterable[_Entry]) -> list[_Entry]:
     return named
 
 
-def _in_walls(entries: list[_Entry], walls: Walls) -> tuple[str, ...]:
-    """Names of those by hand that are captured inside a wall; panoramas are captured nowhere."""
+def _at_walls(entries: list[_Entry], walls: Walls) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names of those by hand that are captured inside a wall, and of others that are nearly.
+
+    Panoramas are captured nowhere.
+    """
     judged = [entry for entry in entries if entry.by_hand and entry.panorama is None]
     if not judged or len(walls.geometry.triangles) == 0:
-        return ()
-    buried = walls.sight(np.array([entry.capture_position for entry in judged])).buried
-    return tuple(entry.name for entry, is_in in zip(judged, buried, strict=True) if is_in)
+        return (), ()
+    points = np.array([entry.capture_position for entry in judged])
+    buried = walls.sight(points).buried
+    near = nearest_within(points, walls.geometry, NEAR_WALL_M).distance_m < NEAR_WALL_M
+    inside, close = np.flatnonzero(buried), np.flatnonzero(near & ~buried)
+    return tuple(judged[i].name for i in inside), tuple(judged[i].name for i in close)
 
 
 def _warnings(
@@ -223,16 +265,12 @@ def _warnings(
         found.append(
             f"{_probes(len(tally.in_walls))} inside a wall or behind it: {_listed(tally.in_walls)}"
         )
-    if probes.placement.kind == "lattice" and tally.moved + tally.dropped_in_walls:
+    if tally.near_walls:
         found.append(
-            f"of the lattice, {_probes(tally.moved)} moved out of walls, "
-            f"{tally.dropped_in_walls} inside walls left out"
+            f"{_probes(len(tally.near_walls))} nearer than {NEAR_WALL_M * 1e2:g} cm to a surface: "
+            f"{_listed(tally.near_walls)}"
         )
-    if probes.placement.kind == "random" and made < probes.placement.count:
-        found.append(
-            f"only {made} of {probes.placement.count} random probes have room: "
-            f"{tally.crowded} places were too near to one, {tally.dropped_in_walls} in walls"
-        )
+    found += _of_generated(probes, tally, made)
     odd, turned = winding_faults(geometry)
     if odd + turned:
         found.append(
@@ -240,6 +278,22 @@ def _warnings(
             "triangles are wound against each other: what is inside a wall is told by majority"
         )
     return tuple(found)
+
+
+def _of_generated(probes: Probes, tally: Tally, made: int) -> list[str]:
+    kind = probes.placement.kind
+    if kind == "lattice" and tally.moved + tally.dropped_in_walls + tally.too_near:
+        return [
+            f"of the lattice, {_probes(tally.moved)} moved out of walls or away from surfaces, "
+            f"{tally.dropped_in_walls} inside walls and {tally.too_near} too near to one left out"
+        ]
+    if kind == "random" and made < probes.placement.count:
+        return [
+            f"only {made} of {probes.placement.count} random probes have room: "
+            f"{tally.crowded} places were too near to one, {tally.dropped_in_walls} in walls, "
+            f"{tally.too_near} too near to a surface"
+        ]
+    return []
 
 
 def _probes(number: int) -> str:

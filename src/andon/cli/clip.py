@@ -12,6 +12,7 @@ import numpy as np
 
 from andon.cli.console import note
 from andon.cli.relight import check_view
+from andon.cli.without_photograph import refuse_photograph, white_text
 from andon.errors import InputError, MachineError
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def run(options: ClipOptions) -> None:
 
     scene = load_scene(options.scene)
     check_view(scene, options.view)
-    _refuse_overwriting(options.out, scene)
+    refuse_photograph(options.out, scene)
     rate = options.frames_per_second
     rate = scene.scene.frames_per_second if rate is None else rate
     times = _times(options, scene, rate)
@@ -62,6 +63,9 @@ def run(options: ClipOptions) -> None:
         _write_folder(options, renderer, times)
     else:
         _write_file(options, renderer, times, rate)
+    white = white_text(scene, renderer.prepared)
+    if white is not None:
+        note(f"white is {white}")
     for line in renderer.prepared.surface.notes:
         note(line)
     if renderer.prepared.ignored:
@@ -99,23 +103,6 @@ def _check_out(out: Path) -> bool:
             remedy="name a new one, or empty it",
         )
     return True
-
-
-def _refuse_overwriting(out: Path, scene: Scene) -> None:
-    from andon.engines.reading import source_of
-
-    names = [name for name, _ in scene.rig.cameras] if scene.rig is not None else []
-    if (
-        scene.capture is not None
-        and scene.capture.source is not None
-        and any(Path(source_of(scene, name)[0]).resolve() == out.resolve() for name in names)
-    ):
-        raise InputError(
-            "is also the scene's photograph, and would be overwritten",
-            file=out,
-            field="--out",
-            remedy="give it another name",
-        )
 
 
 def _times(options: ClipOptions, scene: Scene, rate: float) -> list[float]:

@@ -10,7 +10,7 @@ from andon.gpu.textures import make_texture
 from andon.harmonics import irradiance
 from andon.transport.probes.light import probe_coefficients, probe_illuminance
 from andon.transport.probes.stage import ProbeBuffers
-from andon.verify.rows.probe_light import leaks_in
+from andon.verify.rows.probe_light import doorway_error, leaks_in
 from comparison import assert_agree
 
 from .volumes import POSITIONS, light_of, random_volume, unit_vectors, volume_at
@@ -69,6 +69,13 @@ def test_walls_keep_light_in_its_room(towards_wall):
     through, _ = leaks_in("off", 0.0, 0, towards_wall)
     assert leaked < 2 < through
     assert error < 110
+
+
+def test_light_of_a_doorway_stays_off_the_back_of_its_wall():
+    """Probes of the lit room see through the opening what lies beside it; rays give the truth."""
+    assert doorway_error(True, True) < 120
+    assert doorway_error(False, True) > 1000
+    assert doorway_error(True, False) < 0.5 * doorway_error(False, False)
 
 
 # ── parity ──────────────────────────────────────────────────────────────────────────────────────

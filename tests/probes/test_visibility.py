@@ -10,7 +10,7 @@ from andon.octahedra import bilinear_taps, directions_of, square_of
 from andon.transport.probes.cells import build_cells
 from andon.transport.probes.hidden import LEAST, NEIGHBOURS, hidden_mix, neighbours_of
 from andon.transport.probes.light import probe_coefficients, probe_illuminance, probe_mix
-from andon.transport.probes.visibility import distance_map, visible
+from andon.transport.probes.visibility import NEAR_M, TURN, believed, distance_map, visible
 from comparison import assert_agree
 
 from .volumes import FAR_M, POSITIONS, light_of, random_volume, unit_vectors, volume_at
@@ -257,3 +257,61 @@ def test_neighbours_share_an_edge():
     assert away[:, :3].max() < 1.01  # each has its three or more neighbours along the axes
     lonely = neighbours_of(build_cells(POSITIONS["single"]), np.zeros((1, 3)))
     assert (lonely == -1).all()
+
+
+def test_probes_in_front_are_believed_as_they_see():
+    light = light_of(random_volume(POSITIONS["random"], seed=2))
+    points = np.random.default_rng(0).uniform(0, 4, (400, 3))
+    normals = unit_vectors(400, seed=5)
+    probes = light.space.locate(points).probes
+    args = (light.walls.distances, light.walls.capture_positions, probes, points)
+    seen, belief = believed(*args, normals)
+    reach = light.walls.capture_positions[probes] - points[:, None]
+    cosine = np.einsum("qki,qi->qk", reach, normals) / np.linalg.norm(reach, axis=-1)
+    far = np.linalg.norm(reach, axis=-1) > NEAR_M
+    front = far & (cosine > TURN)
+    assert (belief[front] == seen[front]).all()
+    assert (belief <= seen).all()
+    assert belief[far & (cosine < -TURN)].min() == 0
+    free = believed(*args)
+    assert (free[0] == free[1]).all()
+
+
+def test_a_probe_behind_must_see_past_the_point():
+    """Straight behind a surface: a free point half way to the wall, and one of the wall itself."""
+    normals = np.array([[1.0, 0, 0]])
+    middle = Distances(*(m[None] for m in distance_map(cube_room(32, half=2.0), 16)), FAR_M)
+    for x, least, most in ((1.0, 0.9, 1.0), (2.0, 0.0, 0.0)):
+        point = np.array([[x, 0.1, 0.05]])
+        seen, belief = believed(middle, np.zeros((1, 3)), np.zeros((1, 1), int), point, normals)
+        assert seen[0, 0] > 0.9
+        assert least <= belief[0, 0] <= most
+
+
+def test_the_light_is_continuous_in_the_normal():
+    """All the way round, past planes that touch probes, steps shrink."""
+    light = light_of(random_volume(POSITIONS["random"], seed=3))
+    for point in np.random.default_rng(0).uniform(0, 4, (5, 3)):
+        jumps = []
+        for count in (1_000, 40_000):
+            angles = np.linspace(0, 2 * np.pi, count)
+            normals = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+            mix = probe_mix(light, np.broadcast_to(point, normals.shape), normals)
+            values = np.einsum("qj,qj->q", mix.weights, light.coefficients[mix.probes, 0, 1])
+            jumps.append(np.abs(np.diff(values)).max())
+        assert jumps[1] < 0.15 * jumps[0]
+
+
+def test_a_surface_that_turns_its_back_on_all_probes_takes_those_that_see_it():
+    """Where no probe proves anything, the mix is that of what sees the point."""
+    positions = POSITIONS["lattice"]
+    distances = np.full((64, 6, 8, 8), 1.72)
+    light = light_of(volume_at(positions, np.ones((64, 9, 3)), distances))
+    point, outwards = np.array([[4.5, 1.4, 1.7]]), np.array([[1.0, 0, 0]])
+    plain = light.space.locate(point)
+    _, belief = believed(
+        light.walls.distances, light.walls.capture_positions, plain.probes, point, outwards
+    )
+    assert belief[0, :3].max() == 0
+    mix = hidden_mix(light.walls, plain, point, outwards)
+    assert_agree(mix.weights[0, :3], plain.weights[0, :3], atol=1e-6)

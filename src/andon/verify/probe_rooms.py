@@ -7,6 +7,7 @@
         │      ·   ·  · ▌ ·   ·   ·     │  right room. The lattice of probes is turned around y and
         └───────────────┴───────────────┘  shifted: no row of it is parallel to the wall.
 
+`doorway` has an opening in that wall, 1 m wide and 2.1 m high, in front of the lamp.
 `coloured_room` is a cube of 3 m, its left wall red, its right one green.
 """
 
@@ -19,15 +20,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.files.volumes import Distances, ProbeVolume, plain_volume
-from andon.harmonics import cube_directions, project_cube
+from andon.harmonics import cube_directions, cube_solid_angles, project_cube
 from andon.quantities import Geometry, Material
 from andon.rays import RayScene, face_normals
 from andon.spaces import View
 from andon.transport.probes.visibility import distance_map
 
 __all__ = [
+    "DOOR_WALL_M",
     "LitRoom",
     "coloured_room",
+    "dark_face_of_doorway",
+    "doorway",
     "lattice",
     "points_in",
     "surfaces_of_dark_room",
@@ -41,6 +45,8 @@ Corner = tuple[float, float, float]
 HALF_WIDTH_M, HEIGHT_M, DEPTH_M = 4.0, 3.0, 4.0
 # Of the points that are asked, and of probes, to any surface.
 CLEAR_M = 0.1
+# Of the doorway: thickness of its wall, where along z it is, and its height.
+DOOR_WALL_M, DOOR_M, DOOR_HEIGHT_M = 0.15, (0.2, 1.2), 2.1
 # Longer than the diagonal of both rooms, 9.4 m.
 FAR_M = 12.0
 # Receivers are lifted off their surface by this before the lamp is looked for.
@@ -99,6 +105,19 @@ class LitRoom:
         light[hit] = self._reflectances[triangle] * (lux / np.pi)[:, None]
         return light, hits.distance
 
+    def gathered_lux(self, points: Float, normals: Float, size: int = 32) -> Float:
+        """(q, 3) lux on surfaces at `points` that face `normals`, through `size` texels a face."""
+        directions = cube_directions(size).reshape(-1, 3)
+        shares = np.tile(cube_solid_angles(size).ravel(), 6)
+        lux = np.empty((len(points), 3))
+        for number, (point, normal) in enumerate(zip(points, normals, strict=True)):
+            cosine = directions @ normal
+            front = cosine > 0
+            origins = np.broadcast_to(point + LIFT_M * normal, (int(front.sum()), 3))
+            light, _ = self.seen(origins, directions[front])
+            lux[number] = (shares * cosine)[front] @ light
+        return lux
+
     def _direct_lux(self, points: Float, normals: Float) -> Float:
         reach = self.lamp_m - points
         away = np.linalg.norm(reach, axis=1)
@@ -153,6 +172,30 @@ def two_rooms(thickness_m: float = 0.1) -> LitRoom:
     for s in sorted({-thickness_m / 2, thickness_m / 2}):
         panels.append(((0.7, 0.7, 0.65), [(s, 0, -z), (s, y, -z), (s, y, z), (s, 0, z)]))
     return LitRoom(_walls(panels), np.array([-1.4, 1.7, 0.6]), 300.0)
+
+
+def doorway() -> LitRoom:
+    """`two_rooms` with a wall that one can walk through."""
+    x, y, z = HALF_WIDTH_M, HEIGHT_M, DEPTH_M / 2
+    s, top, (near, far) = DOOR_WALL_M / 2, DOOR_HEIGHT_M, DOOR_M
+    panels = _shell((-x, 0, -z), (x, y, z), (0.7, 0.2, 0.2), (0.6, 0.6, 0.6), (0.2, 0.6, 0.25))
+    white = (0.7, 0.7, 0.65)
+    for side in (-s, s):
+        for a, b, c, d in ((0, y, -z, near), (0, y, far, z), (top, y, near, far)):
+            panels.append((white, [(side, a, c), (side, b, c), (side, b, d), (side, a, d)]))
+    for jamb in DOOR_M:
+        panels.append((white, [(-s, 0, jamb), (s, 0, jamb), (s, top, jamb), (-s, top, jamb)]))
+    panels.append((white, [(-s, top, near), (s, top, near), (s, top, far), (-s, top, far)]))
+    return LitRoom(_walls(panels), np.array([-1.4, 1.7, 0.6]), 300.0)
+
+
+def dark_face_of_doorway(count: int, seed: int = 7) -> tuple[Float, Float]:
+    """`count` points (count, 3) on the side of the doorway's wall that is dark; and normals."""
+    generator = np.random.default_rng(seed)
+    y, z = generator.uniform([0, -DEPTH_M / 2], [HEIGHT_M, DEPTH_M / 2], (4 * count, 2)).T
+    wall = (y > DOOR_HEIGHT_M) | (z < DOOR_M[0]) | (z > DOOR_M[1])
+    points = np.stack([np.full_like(y, DOOR_WALL_M / 2), y, z], axis=1)[wall][:count]
+    return points, np.tile([1.0, 0, 0], (count, 1))
 
 
 def coloured_room() -> LitRoom:

@@ -3,12 +3,15 @@
 Every hidden probe hands its weight on to the probes that it is joined to, by inverse squared
 distance from the point; and only where hardly any weight of the cell itself is left::
 
-    W_j = w_j·v_j + f·Σ_i w_i·g_ij·v_j + ε·w_j        f = max(0, 1 − Σ w·v / ENOUGH)
+    W_j = w_j·b_j + f·Σ_i w_i·g_ij·b_j + δ·w_j·v_j + ε·w_j        f = max(0, 1 − Σ w·b / ENOUGH)
 
-with weights w of the cell, visibility v, and g_ij the shares of i's neighbours, which sum to 1.
-w is continuous across faces of cells, since a probe that leaves or enters has weight 0 there, and
-g belongs to a probe, not to a cell: so W is continuous, too. ε decides where all is hidden: then
-the cell's own mix is given, as without walls.
+with weights w of the cell, visibility v, belief b ≤ v (`visibility.believed`), and g_ij the shares
+of i's neighbours, which sum to 1. w is continuous across faces of cells, since a probe that leaves
+or enters has weight 0 there, and g belongs to a probe, not to a cell: so W is continuous, too.
+
+δ decides where no probe is believed: a surface that turns its back on all of them takes what sees
+it, so it is not black. ε decides where all is hidden: then the cell's own mix is given, as without
+walls.
 """
 
 from __future__ import annotations
@@ -20,9 +23,18 @@ from numpy.typing import NDArray
 
 from andon.files.volumes.model import Cells, Distances, ProbeVolume
 from andon.transport.probes.space import Mix
-from andon.transport.probes.visibility import visible
+from andon.transport.probes.visibility import believed
 
-__all__ = ["ENOUGH", "LEAST", "NEIGHBOURS", "Walls", "hidden_mix", "neighbours_of", "walls_of"]
+__all__ = [
+    "BEHIND",
+    "ENOUGH",
+    "LEAST",
+    "NEIGHBOURS",
+    "Walls",
+    "hidden_mix",
+    "neighbours_of",
+    "walls_of",
+]
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
@@ -33,6 +45,8 @@ ENOUGH = 0.05
 # ε: what a hidden probe keeps of its weight; its share of the light is this over ENOUGH at most,
 # unless there is no visible one at all.
 LEAST = 1e-5
+# δ: the same of a probe that is seen, but behind the surface and not believed.
+BEHIND = 1e-3
 # Of each probe: the nearest that it shares an edge with; a tetrahedral lattice has 14 such.
 NEIGHBOURS = 8
 
@@ -90,12 +104,12 @@ def hidden_mix(walls: Walls, mix: Mix, points: Float, normals: Float | None = No
     -------
     Weights ≥ 0 that sum to 1.
     """
-    seen = visible(walls.distances, walls.capture_positions, mix.probes, points, normals)
-    own = mix.weights * seen
+    seen, belief = believed(walls.distances, walls.capture_positions, mix.probes, points, normals)
+    own = mix.weights * belief
     share = own.sum(axis=1)
     # Weights that add up to 1 only nearly must not call for neighbours where all is visible.
     helped = np.maximum(1 - share / ENOUGH, 0)
-    weights = own + LEAST * mix.weights
+    weights = own + (BEHIND * seen + LEAST) * mix.weights
     probes = mix.probes
     few = np.flatnonzero(helped > 0)
     if len(few):
@@ -127,5 +141,5 @@ def _lent(
     total = closeness.sum(axis=-1, keepdims=True)
     shares = np.divide(closeness, total, out=np.zeros_like(closeness), where=total > 0)
     flat = near.reshape(len(points), -1)
-    seen = visible(walls.distances, walls.capture_positions, flat, points, normals)
-    return flat, (weights[..., None] * shares).reshape(len(points), -1) * seen
+    _, belief = believed(walls.distances, walls.capture_positions, flat, points, normals)
+    return flat, (weights[..., None] * shares).reshape(len(points), -1) * belief

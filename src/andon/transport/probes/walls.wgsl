@@ -10,15 +10,23 @@
 
 const PROBE_CUT: f32 = 0.5;
 const PROBE_LIFT: f32 = 0.1;
+const PROBE_PAST: f32 = 0.1;
+const PROBE_SURE: f32 = 0.2;
+const PROBE_TURN: f32 = 0.1;
+const PROBE_NEAR_M: f32 = 0.05;
 const PROBE_LEAST_SPREAD: f32 = 1e-3;
 const PROBE_ENOUGH: f32 = 0.05;
 const PROBE_LEAST: f32 = 1e-5;
+const PROBE_BEHIND: f32 = 1e-3;
 
-// How much a point may believe a probe: 0 hidden … 1 seen.
-fn seen(probe: i32, position: vec3f, normal: vec3f) -> f32 {
+// How far a probe sees a point (x), and how much the point may believe it (y): 0 … 1.
+fn believed(probe: i32, position: vec3f, normal: vec3f) -> vec2f {
   var reach = position - datum(PROBE_PLACES + 4 * probe).xyz;
-  reach += PROBE_LIFT * length(reach) * normal;
-  let distance = length(reach);
+  let away = length(reach);
+  let height = -dot(reach, normal) / max(away, PROBE_NEAR_M);
+  let facing = smoothstep(-PROBE_TURN, PROBE_TURN, height);
+  reach += PROBE_LIFT * away * facing * normal;
+  let distance = min(length(reach), PROBE_FAR_M);
   let direction = select(vec3f(0.0, 0.0, 1.0), reach, distance > 0.0);
   let at = (octahedral_square(direction) + 1.0) * (0.5 * PROBE_SIDE) + 0.5;
   let first = floor(at);
@@ -33,11 +41,15 @@ fn seen(probe: i32, position: vec3f, normal: vec3f) -> f32 {
   let means = vec4f(a.x, b.x, c.x, d.x);
   let mean = dot(weights, means);
   let spread = dot(weights, vec4f(a.y, b.y, c.y, d.y) + (means - mean) * (means - mean));
-  let behind = max(min(distance, PROBE_FAR_M) - mean, 0.0);
+  let behind = max(distance - mean, 0.0);
   let least = PROBE_LEAST_SPREAD * mean;
   let variance = max(max(spread, least * least), 1e-12);
   let share = max((variance / (variance + behind * behind) - PROBE_CUT) / (1.0 - PROBE_CUT), 0.0);
-  return share * share * share;
+  let seen = share * share * share;
+  let margin = max(mean - min((1.0 + PROBE_PAST) * distance, PROBE_FAR_M), 0.0);
+  let free = margin * margin / (variance + margin * margin);
+  let sure = max((free - PROBE_SURE) / (1.0 - PROBE_SURE), 0.0);
+  return vec2f(seen, seen * mix(sure, 1.0, facing));
 }
 
 // Light (xyz, times the weight) and weight (w) that the neighbours of a hidden probe give instead.
@@ -49,7 +61,7 @@ fn lent(probe: i32, position: vec3f, normal: vec3f) -> vec4f {
     if (near < 0) { break; }
     let away = position - datum(PROBE_PLACES + 4 * near + 1).xyz;
     let closeness = 1.0 / max(dot(away, away), 1e-12);
-    let weight = closeness * seen(near, position, normal);
+    let weight = closeness * believed(near, position, normal).y;
     total += closeness;
     light += weight * vec4f(irradiance(near, normal), 1.0);
   }
@@ -61,9 +73,10 @@ fn probe_lux(position: vec3f, normal: vec3f) -> vec3f {
   var light = vec4f(0.0);
   var share = 0.0;
   for (var k = 0; k < 4; k++) {
-    let own = mix.weights[k] * seen(mix.probes[k], position, normal);
-    share += own;
-    light += (own + PROBE_LEAST * mix.weights[k]) * vec4f(irradiance(mix.probes[k], normal), 1.0);
+    let seen = believed(mix.probes[k], position, normal);
+    share += mix.weights[k] * seen.y;
+    let own = mix.weights[k] * (seen.y + PROBE_BEHIND * seen.x + PROBE_LEAST);
+    light += own * vec4f(irradiance(mix.probes[k], normal), 1.0);
   }
   // As a loop whose end depends on the pixel, it costs one step where nobody needs it.
   let helped = max(1.0 - share / PROBE_ENOUGH, 0.0);

@@ -124,7 +124,7 @@ def _joined(path: Path, baked: Baked) -> tuple[ProbeVolume, bool]:
         return volume, True
     for name, coefficients in volume.states.items():
         old = with_state(old, name, coefficients)
-    return replace(volume, states=old.states), False
+    return replace(volume, states=old.states, notes={**old.notes, **volume.notes}), False
 
 
 def _same_probes(old: ProbeVolume, new: ProbeVolume) -> bool:

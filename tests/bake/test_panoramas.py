@@ -101,6 +101,14 @@ def test_it_knows_the_walls_of_the_scene(tmp_path, engine):
     assert second[0, 0] > 1
 
 
+def test_it_is_dimmed_as_e0_is(tmp_path):
+    write_exr(tmp_path / "a.exr", np.asarray(grey(1.0), np.float32), unit="", photometry="relative")
+    place = {"place": [{"position": [0, 0, 0], "panorama": "a.exr"}], "placement": {"kind": "hand"}}
+    ambient = {"illuminance_lux": 9.0, "dimming": [0.5, 0.25, 1.0]}
+    found, _ = light(lamp_room(tmp_path, probes=place, ambient=ambient))
+    np.testing.assert_allclose(found[0], np.sqrt(4 * np.pi) * np.array([0.5, 0.25, 1]), rtol=1e-5)
+
+
 def test_panoramas_of_unknown_scale_are_named_once(tmp_path):
     stated = panorama(tmp_path, grey(1.0), luminance_per_unit=1.0)
     assert light(stated)[1].unscaled == ()

@@ -1,5 +1,7 @@
 """Bakes of photographed scenes: what light they hold, and how frames use it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,9 @@ from andon.bake import bake_file, bake_probes
 from andon.bake.to_file import placed_in, scene_geometry
 from andon.engines.cubes import cube_setting
 from andon.engines.prepared import prepare
-from andon.files.volumes import read_volume
+from andon.errors import InputError
+from andon.files.volumes import read_volume, write_volume
+from andon.pipeline import Renderer
 from worlds import ball, scene, write_glb
 
 
@@ -108,3 +112,121 @@ def test_surroundings_are_not_reflected_again(tmp_path):
     """E0 was measured: all reflections are in it."""
     once, often = (baked(with_ball(tmp_path, probes={"bounces": n}))[0] for n in (0, 3))
     np.testing.assert_array_equal(once, often)
+
+
+# ── from a bake to a frame ──────────────────────────────────────────────────────────────────────
+
+
+def drawn(loaded):
+    """What a frame shows of the ball, cd/m², and the notes of its report."""
+    prepared = prepare(loaded)
+    frame = Renderer(prepared, "reference").render()
+    return frame.luminance.cd_m2[frame.surface.is_object], prepared.surface.notes
+
+
+def renewed(loaded):
+    bake_file(loaded, engine="reference")
+    return drawn(loaded)
+
+
+@pytest.mark.parametrize("lookup", ["pixel", "object"])
+def test_dimming_is_in_the_light_of_objects_once(tmp_path, lookup):
+    """Half of E0 halves what an object stands in; what a lamp adds is as it was."""
+    probes = {"lookup": lookup, "dering": False}
+    lamp = [BULB | {"intensity_cd": 5.0}]
+
+    def ball_in(dimming, lamps):
+        ambient = {"illuminance_lux": 200.0, "dimming": dimming}
+        found, notes = renewed(with_ball(tmp_path, ambient=ambient, lamp=lamps, probes=probes))
+        assert notes == ()
+        return found
+
+    full, half = ball_in(1.0, []), ball_in(0.5, [])
+    assert full.min() > 1
+    np.testing.assert_allclose(half, 0.5 * full, rtol=1e-4)
+    added = ball_in(1.0, lamp) - full
+    assert added.max() > 1
+    np.testing.assert_allclose(ball_in(0.5, lamp) - half, added, atol=1e-3 * added.max())
+
+
+def test_an_object_stands_in_e0_where_nothing_else_is_known(tmp_path):
+    """Beside a grey picture under E0 it is as bright as the mean of E0 says, within a third."""
+    by_probes, _ = renewed(with_ball(tmp_path))
+    in_e0, _ = drawn(with_ball(tmp_path, object=[{"mesh": "ball.glb", "lit_by_probes": False}]))
+    ratio = by_probes.mean() / in_e0.mean()
+    assert 0.67 < ratio < 1.1
+
+
+def test_another_dimming_than_the_baked_one_is_said(tmp_path):
+    loaded = with_ball(tmp_path)
+    before, notes = renewed(loaded)
+    assert notes == ()
+    later = with_ball(tmp_path, ambient={"illuminance_lux": 200.0, "dimming": 0.25})
+    after, notes = drawn(later)
+    np.testing.assert_array_equal(after, before)
+    (note,) = notes
+    assert "dimming (baked 1 1 1, now 0.25 0.25 0.25); andon probes bake" in note
+
+
+SKY = {"name": "sky", "kind": "sky", "illuminance_lux": 50.0}
+SUN = {"name": "sun", "kind": "directional", "direction": [0, -1, 0], "illuminance_lux": 9.0}
+
+
+@pytest.mark.parametrize(
+    ("tables", "said"),
+    [
+        ({"lamp": [SKY, SUN | {"illuminance_lux": 10.0}]}, "baked: the lamp 'sun';"),
+        ({"lamp": [SKY]}, "baked: the lamp 'sun' is gone;"),
+        ({"lamp": [SKY, SUN | {"in_probes": False}]}, "baked: the lamp 'sun' is gone;"),
+        ({"lamp": [SKY, SUN, BULB | {"intensity_cd": 1.0}]}, "baked: the lamp 'bulb' is new;"),
+        ({"object": [{"mesh": "ball.glb", "position": [0.1, 0, 0]}]}, "baked: what stands in it;"),
+        ({"ambient": {"illuminance_lux": 201.0}}, "E0 (baked 200 200 200, now 201 201 201);"),
+        ({"probes": {"place": [{"position": [0, 0, -1]}]}}, "baked: the places of probes;"),
+    ],
+)  # fmt: skip
+def test_what_has_changed_since_the_bake_is_said(tmp_path, tables, said):
+    base = {"lamp": [SKY, SUN]}
+    assert renewed(with_ball(tmp_path, **base))[1] == ()
+    (note,) = drawn(with_ball(tmp_path, **(base | tables)))[1]
+    assert said in note
+
+
+def test_a_sky_that_was_not_baked_lights_objects_itself(tmp_path):
+    """And one that was does not, whatever the scene says of it now."""
+    without, _ = renewed(with_ball(tmp_path))
+    later = with_ball(tmp_path, lamp=[SKY])
+    assert prepare(later).probes.captured == frozenset()
+    assert drawn(later)[0].mean() > 1.05 * without.mean()
+    bake_file(later, engine="reference")
+    assert prepare(later).probes.captured == {"sky"}
+    out = with_ball(tmp_path, lamp=[SKY | {"in_probes": False}])
+    assert prepare(out).probes.captured == {"sky"}
+    assert prepare(with_ball(tmp_path)).probes.captured == frozenset()
+
+
+def test_each_state_keeps_what_it_was_baked_from(tmp_path):
+    day = with_ball(tmp_path, lamp=[SUN], probes={"state": "day"})
+    night = with_ball(tmp_path, lamp=[], probes={"state": "night"})
+    bake_file(day, engine="reference")
+    bake_file(night, engine="reference")
+    for loaded in (day, night):
+        assert drawn(loaded)[1] == ()
+    mixed = {"state": "day", "blend_state": "night", "blend": 0.5}
+    assert drawn(with_ball(tmp_path, lamp=[SUN], probes=mixed))[1] == ()
+
+
+def test_light_of_another_word_is_refused(tmp_path):
+    bake_file(with_ball(tmp_path), engine="reference")
+    with pytest.raises(InputError, match="holds absolute light, and the scene is relative"):
+        prepare(with_ball(tmp_path, scene={"photometry": "relative"}))
+
+
+def test_notes_of_others_say_nothing(tmp_path):
+    loaded = with_ball(tmp_path, lamp=[SKY], ambient={"illuminance_lux": 200.0, "dimming": 0.5})
+    path = bake_file(loaded, engine="reference").path
+    volume = read_volume(path)
+    for notes in ({}, volume.notes | {"lamps of default": "[]"},
+                  volume.notes | {"sky of default": "{"}):  # fmt: skip
+        write_volume(path, replace(volume, notes=notes))
+        probes = prepare(loaded).probes
+        assert (probes.captured, probes.dimming, probes.baked) == ({"sky"}, (0.5,) * 3, ())

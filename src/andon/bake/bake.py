@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.bake.digest import digest
 from andon.bake.journal import Journal, Result
 from andon.bake.places import far_m
 from andon.bake.report import BakeReport
 from andon.bake.runner import Progress, Runner
 from andon.bake.task import PARTS, Look, Pictures, bounced, encoded, first_light
+from andon.engines.baked import dimming_of, facts_of
 from andon.engines.cubes import CubeSetting, cube_engine, cube_setting
+from andon.engines.digest import digest
 from andon.engines.photographless import white_cd_m2
 from andon.engines.prepared import prepare
 from andon.errors import InputError
@@ -178,7 +179,9 @@ class _Bake:
         contents = None
         if panorama is not None:
             path = self.scene.path(panorama.reference, panorama.field)
-            contents = digest(panorama, np.frombuffer(_bytes_of(path), np.uint8))
+            contents = digest(
+                panorama, dimming_of(self.scene), np.frombuffer(_bytes_of(path), np.uint8)
+            )
         return digest(self.base, placed.capture_positions[index], placed.ranges_m[index], contents)
 
     def _bounce(self, bounce: int, light: ProbeLight) -> Float:
@@ -253,6 +256,7 @@ class _Bake:
         from andon import __version__
 
         placed, probes = self.placed, self.probes
+        state = probes.state or DEFAULT_STATE
         notes = {
             "generator": f"Andon {__version__}",
             "scene": Path(self.scene.file).name,
@@ -260,6 +264,7 @@ class _Bake:
             "encoding": probes.encoding,
             "solid_angle": probes.solid_angle,
             "bounces": str(probes.bounces),
+            **self._facts(state),
         }
         return ProbeVolume(
             positions=placed.positions,
@@ -267,13 +272,21 @@ class _Bake:
             names=placed.names,
             roles=placed.roles,
             ranges_m=placed.ranges_m,
-            states={probes.state or DEFAULT_STATE: coefficients},
+            states={state: coefficients},
             zones=self.zones,
             cells=self.cells,
             distances=distances,
             photometry=self.scene.photometry,
             notes=notes,
         )
+
+    def _facts(self, state: str) -> dict[str, str]:
+        """What the light depends on, for frames that come later; of panoramas alone nothing."""
+        if self.setting is None:
+            return {}
+        prepared = self.setting.prepared
+        lamps = self.setting.moment.lamps
+        return facts_of(self.scene, prepared.surface, prepared.ambient, lamps).notes(state)
 
     def _report(self, first: Sequence[Result], recoded: Sequence[Result]) -> BakeReport:
         names = self.placed.names

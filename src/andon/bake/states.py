@@ -63,7 +63,7 @@ def joined(path: Path, volume: ProbeVolume, /) -> ProbeVolume:
         return volume
     for name, coefficients in volume.states.items():
         old = with_state(old, name, coefficients)
-    return replace(volume, states=old.states)
+    return replace(volume, states=old.states, notes={**old.notes, **volume.notes})
 
 
 def _read(path: Path) -> ProbeVolume:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from andon.bake.journal import Result
 from andon.bake.panoramas import panorama_light
+from andon.engines.baked import dimming_of
 from andon.engines.cubes import CubeEngine, CubeSetting
 from andon.harmonics import SolidAngle, coefficient_count, cube_directions, project_cube
 from andon.scene import Scene
@@ -79,7 +80,9 @@ def first_light(pictures: Pictures, index: int, /) -> Result:
     if panorama is not None:
         light = panorama_light(pictures.scene, panorama, pictures.order)
         nothing = np.zeros((coefficient_count(pictures.order), 3))
-        parts = [light.coefficients, nothing, nothing]
+        # Real light as E0 is, and dimmed with it; without a scene to be in, as it is.
+        left = 1.0 if pictures.look is None else np.array(dimming_of(pictures.scene))
+        parts = [light.coefficients * left, nothing, nothing]
         counts |= {"clipped_share": light.clipped_share, "negative": float(light.negative)}
         if pictures.look is not None:
             place = pictures.placed.capture_positions[index]

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.engines.baked import lamps_in_probes
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.errors import InputError, MachineError
@@ -140,8 +141,7 @@ def cube_setting(scene: Scene, prepared: Prepared, /) -> CubeSetting:
             remedy="give a depth or a mesh",
         )
     moment = prepared.at(0.0)
-    left_out = {table.name for table in scene.lamp if not table.in_probes}
-    lamps = [lamp for lamp in moment.lamps if (lamp.owner or lamp.name) not in left_out]
+    lamps = lamps_in_probes(scene, moment.lamps)
     lighting = _lighting(scene, prepared, lamps)
     # A material whose light the photograph shows emits nothing beside it.
     real = model.real if lighting.photograph is None else _without_materials(model.real)

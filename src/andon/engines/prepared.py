@@ -17,7 +17,7 @@ from andon.engines.photographless import (
     sky_frames,
     white_cd_m2,
 )
-from andon.engines.probes import SceneProbes, ambient_of_probes, probes_of
+from andon.engines.probes import SceneProbes, ambient_of_probes, changed_since_bake, probes_of
 from andon.engines.reading import (
     ambient_of,
     exposure_of,
@@ -131,6 +131,7 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
     if frames:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
+    notes = (*notes, *changed_since_bake(scene, probes, surface, ambient, lamps))
     return Prepared(
         frames=frames,
         surface=replace(surface, notes=(*surface.notes, *notes)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite.model import Ambient
+from andon.engines.baked import BakeFacts, changes, dimming_of, facts_of, facts_of_notes
 from andon.errors import InputError
 from andon.files.volumes import ProbeVolume, read_volume
 from andon.harmonics import irradiance
+from andon.lamps import Lamp
 from andon.quantities import Surface
 from andon.scene import Scene
 from andon.scene.probes import Probes
@@ -31,6 +33,7 @@ __all__ = [
     "PROBES",
     "SceneProbes",
     "ambient_of_probes",
+    "changed_since_bake",
     "lampless_pixels",
     "light_of_volume",
     "lit_pixels",
@@ -57,13 +60,15 @@ class SceneProbes:
     light : the volume's, in the state that is seen.
     lookup : where light is looked up: at each pixel, or once for each object.
     captured : names of sky and hemisphere lamps whose light is in the probes.
-    dimming : (3,) share of their light that is left; that of E0, where there is one.
+    dimming : (3,) share of their light that is left; 1 where it was baked with the dimming of E0.
+    baked : what the states that are seen were baked from, as far as the volume says it.
     """
 
     light: ProbeLight
     lookup: Literal["pixel", "object"] = "pixel"
     captured: frozenset[str] = frozenset()
     dimming: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    baked: tuple[BakeFacts, ...] = ()
 
     @property
     def dimmed(self) -> ProbeLight:
@@ -137,6 +142,7 @@ def probes_of(scene: Scene, /) -> tuple[SceneProbes | None, tuple[str, ...]]:
             remedy=f"andon probes bake {scene.file} writes it; or leave [probes] out",
         )
     volume = read_volume(path)
+    _check_photometry(scene, volume)
     try:
         light = light_of_volume(volume, table)
     except InputError as error:
@@ -146,16 +152,76 @@ def probes_of(scene: Scene, /) -> tuple[SceneProbes | None, tuple[str, ...]]:
     notes: tuple[str, ...] = ()
     if table.visibility and light.walls is None:
         notes = (f"{path.name} holds no distances: walls hide no probes; bake it with visibility",)
-    captured = frozenset(
-        lamp.name for lamp in scene.lamp if lamp.kind in ("sky", "hemisphere") and lamp.in_probes
+    baked = _baked(volume, table)
+    captured = _captured(scene, baked)
+    return SceneProbes(light, table.lookup, captured, _left(scene, baked), baked), notes
+
+
+def _check_photometry(scene: Scene, volume: ProbeVolume) -> None:
+    if volume.photometry != scene.photometry:
+        raise InputError(
+            f"holds {volume.photometry} light, and the scene is {scene.photometry}",
+            file=scene.file,
+            field="probes.volume",
+            remedy="state scene.photometry as it was baked, or bake it again",
+        )
+
+
+def _baked(volume: ProbeVolume, table: Probes) -> tuple[BakeFacts, ...]:
+    """Of the states that are seen, as far as the volume says it."""
+    states = [table.state or next(iter(volume.states))]
+    if table.blend_state is not None and table.blend > 0:
+        states.append(table.blend_state)
+    found = (facts_of_notes(volume.notes, state) for state in states)
+    return tuple(facts for facts in found if facts is not None)
+
+
+def _captured(scene: Scene, baked: Sequence[BakeFacts]) -> frozenset[str]:
+    """Lamps of the scene that are in the probes; what the volume does not say, the lamps do.
+
+    With E0 by probes the volume is another scene's, and all lamps of this one are added.
+    """
+    if scene.ambient is not None and scene.ambient.probes:
+        return frozenset()
+    skies = [lamp for lamp in scene.lamp if lamp.kind in ("sky", "hemisphere")]
+    if baked:
+        names = frozenset(name for facts in baked for name in facts.sky)
+        return names & {lamp.name for lamp in skies}
+    return frozenset(lamp.name for lamp in skies if lamp.in_probes)
+
+
+def _left(scene: Scene, baked: Sequence[BakeFacts]) -> tuple[float, float, float]:
+    """The share of the volume's light that is left.
+
+    What is known to be baked has the dimming of its scene in it, and lamps' light, which none dims.
+    Other volumes hold real light, as do those that E0 is taken from.
+    """
+    by_probes = scene.ambient is not None and scene.ambient.probes
+    return dimming_of(scene) if by_probes or not baked else (1.0, 1.0, 1.0)
+
+
+def changed_since_bake(
+    scene: Scene,
+    probes: SceneProbes | None,
+    surface: SurfaceModel,
+    ambient: Ambient,
+    lamps: Sequence[Lamp],
+    /,
+) -> tuple[str, ...]:
+    """What is to be said if `scene` is not the one that its probes were baked from.
+
+    `lamps` are all, at the start of the session. A volume for E0 is of another scene anyway.
+    """
+    by_probes = scene.ambient is not None and scene.ambient.probes
+    if probes is None or not probes.baked or by_probes:
+        return ()
+    found = changes(facts_of(scene, surface, ambient, lamps), probes.baked)
+    if not found:
+        return ()
+    return (
+        f"the scene has changed since its probes were baked: {', '.join(found)}; andon probes bake "
+        f"{scene.file} renews them",
     )
-    share = (1.0, 1.0, 1.0) if scene.ambient is None else _triple(scene.ambient.dimming)
-    return SceneProbes(light, table.lookup, captured, share), notes
-
-
-def _triple(values: object) -> tuple[float, float, float]:
-    share: Float = np.broadcast_to(np.asarray(values, float), 3)
-    return float(share[0]), float(share[1]), float(share[2])
 
 
 def light_of_volume(volume: ProbeVolume, table: Probes, /) -> ProbeLight:
@@ -213,4 +279,4 @@ def ambient_of_probes(
             f"E0 of {np.count_nonzero(dark)} pixels is below {LEAST_SHARE:.1%} of the mean by the "
             "probes, and was raised to that",
         )
-    return Ambient(lux, _triple(table.dimming), table.dimming_mode), notes
+    return Ambient(lux, dimming_of(scene), table.dimming_mode), notes

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from andon.files.volumes import Cells, Distances, ProbeVolume, Zone
+from andon.files.volumes import Cells, Distances, ProbeVolume, Zone, plain_volume
 
 __all__ = ["bipyramid", "flat_volume", "light", "two_rooms"]
 
@@ -102,17 +102,7 @@ def flat_volume(kind):
         "line": ([[0, 1, 1], [1, 2, 2]], [[1, -1, -1], [-1, 0, -1]]),
         "point": ([[0, 0, 0]], [[-1, -1, -1]]),
     }
-    count = len(positions)
-    volume = ProbeVolume(
-        positions,
-        positions,
-        ("probe",) * count,
-        ("general",) * count,
-        np.full(count, np.inf),
-        {"default": light(count)},
-        (Zone("all", np.arange(count, dtype=np.int32)),),
-        photometry="relative",
-    )
+    volume = plain_volume(positions, light(len(positions)), photometry="relative")
     if kind == "cells":
         return volume
     none = np.zeros((0, 4), np.int32)

@@ -54,7 +54,8 @@ class Report:
     occluder_triangles, occluder_triangles_before, occluder_error_m, occluder_lost_share : of the
         shadow geometry; the error is the 95th percentile of what decimation moved, in metres, and
         the lost share is what of the real surface has no shadow geometry where it stands.
-    shadow_bias_m : shadows thinner than this are lost on the real surface.
+    shadow_bias_m : shadows thinner than this are lost on the real surface, or on the GPU thinner
+        than a texel of the shadow map.
     maps_redrawn : shadow maps of lamps that had moved.
     stage_seconds : wall time of each stage.
     ignored_tables : tables and keys of the scene that this version does not draw.

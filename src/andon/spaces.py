@@ -33,6 +33,7 @@ __all__ = [
     "invert_rigid",
     "look_at",
     "perpendicular",
+    "pinhole_view",
     "rotate",
     "transform_points",
 ]
@@ -270,3 +271,17 @@ def perpendicular(axis: NDArray[np.float64], /) -> tuple[NDArray[np.float64], ND
     right = np.cross(helper, axis)
     right /= np.linalg.norm(right)
     return right, np.cross(axis, right)
+
+
+def pinhole_view(
+    width: int,
+    height: int,
+    focal_px: float,
+    world_from_camera: Float = WORLD_FROM_CAMERA_DEFAULT,
+    /,
+    *,
+    name: str = "mono",
+) -> View:
+    """A pinhole `View` of `width` × `height` pixels, its principal point in their middle."""
+    middle = ((width - 1) / 2, (height - 1) / 2)
+    return View("pinhole", width, height, focal_px, focal_px, *middle, (), world_from_camera, name)

@@ -161,7 +161,7 @@ def test_the_volume_has_what_was_asked_for(tmp_path):
 def test_a_zone_without_a_probe_is_refused(tmp_path):
     zone = {"name": "attic", "low": [0, 9, 0], "high": [1, 10, 1]}
     room = {"name": "room", "low": [-2, -2, -3], "high": [2, 2, 3]}
-    with pytest.raises(InputError, match="the zone 'attic' has no probe"):
+    with pytest.raises(InputError, match="no probe lies in the zone 'attic'"):
         baked(lamp_room(tmp_path, probes={"zone": [room, zone]}))
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from andon.errors import InputError
 from andon.files import DEFAULT_LIMITS, read_mesh, read_volume, write_volume
-from andon.files.volumes import ProbeVolume, Zone, check_volume, rounded
+from andon.files.volumes import Zone, check_volume, plain_volume, rounded
 from andon.files.volumes.write import volume_bytes
 from andon.transport.probes.cells import build_cells
 from andon.transport.probes.space import ProbeSpace
@@ -395,17 +395,7 @@ def test_cells_of_rounded_positions_pass(kind, tmp_path):
         "plane": generator.uniform(-5, 5, (60, 3)) * [1, 0, 1],
         "line": generator.uniform(-5, 5, (20, 1)) * np.array([[1, 2, 3.0]]),
     }[kind]
-    count = len(positions)
-    bare = ProbeVolume(
-        positions,
-        positions,
-        ("probe",) * count,
-        ("general",) * count,
-        np.full(count, np.inf),
-        {"default": light(count)},
-        (Zone("all", np.arange(count, dtype=np.int32)),),
-    )
-    thin = rounded(bare)
+    thin = rounded(plain_volume(positions, light(len(positions))))
     volume = replace(thin, cells=build_cells(thin.positions, thin.zones))
     assert_same(read_volume(write_volume(tmp_path / "a.glb", volume)), volume)
 
@@ -415,17 +405,7 @@ def test_ten_thousand_probes_are_checked_and_read_in_moderate_memory(tmp_path):
     required("scipy")
     generator = np.random.default_rng(SEED)
     positions = generator.uniform(0, 50, (10_000, 3))
-    count = len(positions)
-    bare = ProbeVolume(
-        positions,
-        positions,
-        tuple(map(str, range(count))),
-        ("general",) * count,
-        np.full(count, np.inf),
-        {"default": light(count)},
-        (Zone("all", np.arange(count, dtype=np.int32)),),
-    )
-    thin = rounded(bare)
+    thin = rounded(plain_volume(positions, light(len(positions))))
     path = write_volume(
         tmp_path / "a.glb", replace(thin, cells=build_cells(thin.positions, thin.zones))
     )
@@ -433,8 +413,8 @@ def test_ten_thousand_probes_are_checked_and_read_in_moderate_memory(tmp_path):
     found = read_volume(path)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert found.count == count
-    assert len(found.cells.corners) > 5 * count
+    assert found.count == 10_000
+    assert len(found.cells.corners) > 5 * 10_000
     assert peak < 20 * path.stat().st_size
 
 

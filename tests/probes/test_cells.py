@@ -6,11 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from andon.errors import InputError
-from andon.files.volumes.model import Zone
+from andon.files.volumes.model import FACES, Zone
 from andon.transport.probes.cells import build_cells
 from andon.transport.probes.delaunay import volumes
-from andon.transport.probes.facets import FACES
-from andon.transport.probes.graph import cell_adjacency, centres, edges
 from andon.verify.probe_sets import degenerate_sets, full_sets, lattice, uniform
 from andon.verify.rows.probe_space import not_refused
 from requirements import required
@@ -146,8 +144,8 @@ def test_any_set_of_lattice_points_is_joined(points, step, turn):
 def test_the_graph_of_a_cube():
     cells = build_cells(lattice(2))
     # Twelve sides, six faces' diagonals, one through the middle.
-    assert len(edges(cells)) == 19
-    assert len(cell_adjacency(cells)) == 6
-    assert centres(cells, lattice(2)).mean(axis=0) == pytest.approx([0.5] * 3)
-    assert edges(build_cells(SETS["three in a row"])).tolist() == [[0, 2], [1, 2]]
-    assert edges(build_cells(SETS["one"])).shape == (0, 2)
+    assert len(cells.edges) == 19
+    assert len(cells.adjacent) == 6
+    assert (cells.neighbours[cells.adjacent[:, 0]] == cells.adjacent[:, 1:]).any(axis=1).all()
+    assert build_cells(SETS["three in a row"]).edges.tolist() == [[0, 2], [1, 2]]
+    assert build_cells(SETS["one"]).edges.shape == (0, 2)

@@ -384,7 +384,9 @@ def test_walls_count_at_a_point():
 
 def test_a_point_or_a_probe():
     volume = ringing_volume()
-    (found,) = exported_lights(volume, volume.states["day"], EXPORTS["csv"], probe="p5")
+    (found,) = exported_lights(volume, volume.states["day"], EXPORTS["csv"], probe="probe 5")
     np.testing.assert_array_equal(found.position_m, volume.positions[5])
     with pytest.raises(InputError, match="one of probe and at"):
-        exported_lights(volume, volume.states["day"], EXPORTS["csv"], probe="p5", at=np.zeros(3))
+        exported_lights(
+            volume, volume.states["day"], EXPORTS["csv"], probe="probe 5", at=np.zeros(3)
+        )

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from andon.files.volumes.model import Cells, ProbeVolume, Zone
+from andon.files.volumes import plain_volume
+from andon.files.volumes.model import Cells, Zone
 from andon.harmonics import irradiance
 from andon.transport.probes.space import ProbeSpace
 from andon.transport.probes.vectors import publish
@@ -55,7 +56,6 @@ def test_a_reader_of_the_file_gets_what_it_says(entry, engine):
     required(engine)
     positions = np.array(entry["positions"])
     light = np.array(entry["coefficients"])
-    count = len(positions)
     zones = tuple(
         Zone(
             zone["name"],
@@ -71,10 +71,7 @@ def test_a_reader_of_the_file_gets_what_it_says(entry, engine):
             for key, value in entry["cells"].items()
         }
     )
-    volume = ProbeVolume(
-        positions, positions, ("",) * count, ("general",) * count, np.full(count, np.inf),
-        {"default": light}, zones, cells,
-    )  # fmt: skip
+    volume = plain_volume(positions, light, zones=zones, cells=cells)
     queries = entry["queries"]
     points = np.array([query["point"] for query in queries])
     mixed = ProbeSpace(volume).lookup(points, light, engine=engine)

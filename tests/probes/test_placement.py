@@ -171,7 +171,7 @@ def test_normals_of_a_room_point_inwards():
     # Two triangles of a face may meet in a corner and one in another: weights differ.
     assert (distance > 0.3 * step).all()
     assert (np.abs(placed.positions - [0, 1.5, 0]) < [2, 1.5, 2]).all()
-    np.testing.assert_allclose(np.linalg.norm(distance, axis=1), 0.3, atol=1e-9)
+    np.testing.assert_allclose(np.linalg.norm(distance, axis=1), 0.3, atol=1e-6)
 
 
 def test_vertices_keep_their_distance_and_the_first_come_wins():
@@ -358,3 +358,47 @@ def test_one_sided_materials_count_at_half_the_share():
         sheet = Geometry(square, faces, materials=(Material(two_sided=two_sided),))
         assert place_probes(scene(place=behind), sheet).tally.in_walls == names
         assert place_probes(scene(place=hand([0, 0, 1])), sheet).tally.in_walls == ()
+
+
+def test_places_are_those_that_files_hold():
+    """Float32 has them, and those on the side between two zones stay in both."""
+    places = hand([0.1, 0.2, 0.3], [0.7, 0, 0])
+    placed = place_probes(scene(place=places), NOTHING)
+    for points in (placed.positions, placed.capture_positions):
+        np.testing.assert_array_equal(points, points.astype(np.float32))
+        assert (points != [[0.1, 0.2, 0.3], [0.7, 0, 0]]).any()
+    boxes = [
+        {"name": "west", "low": [-1, -1, -1], "high": [0.7, 1, 1]},
+        {"name": "east", "low": [0.7, -1, -1], "high": [2, 1, 1]},
+    ]
+    west, east = zones_of(scene(place=places, zone=boxes), placed.positions)
+    assert (west.probes.tolist(), east.probes.tolist()) == ([0, 1], [1])
+
+
+@pytest.mark.parametrize("spacing", [0.7, 1.3, 2.0])
+def test_far_from_the_origin_cells_are_those_of_the_file(tmp_path, spacing):
+    """Where float32 tells places apart by half a metre, or not at all."""
+    from andon.files.volumes import ProbeVolume, read_volume, write_volume
+    from andon.transport.probes.cells import build_cells
+
+    low = np.array([4e5, 100.0, 5e6])
+    lattice = {"kind": "lattice", "counts": [4, 3, 4], "low": low.tolist(),
+               "high": (low + spacing * np.array([3, 2, 3]) + 0.2).tolist()}  # fmt: skip
+    placed = place_probes(scene(**lattice), NOTHING)
+    assert placed.count == 48
+    zones = zones_of(scene(**lattice), placed.positions)
+    volume = ProbeVolume(
+        placed.positions, placed.capture_positions, placed.names, placed.roles, placed.ranges_m,
+        {"day": np.ones((48, 1, 3))}, zones, build_cells(placed.positions, zones),
+    )  # fmt: skip
+    write_volume(tmp_path / "far.glb", volume)
+    np.testing.assert_array_equal(read_volume(tmp_path / "far.glb").positions, placed.positions)
+
+
+def test_places_that_float32_does_not_tell_apart_are_refused():
+    near = hand([4e5, 0, 5e6], [4e5 + 0.3, 0, 5e6])
+    with pytest.raises(InputError, match="too far from the origin for float32") as caught:
+        place_probes(scene(place=near), NOTHING)
+    assert "move the scene" in caught.value.remedy
+    twice = hand([4e5, 0, 5e6], [4e5, 0, 5e6])
+    assert place_probes(scene(place=twice), NOTHING).tally.merged == 1

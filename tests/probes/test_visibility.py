@@ -6,9 +6,10 @@ import pytest
 from andon.errors import InputError
 from andon.files.volumes import Distances
 from andon.harmonics import cube_directions, irradiance
+from andon.octahedra import bilinear_taps, directions_of, square_of
+from andon.transport.probes.cells import build_cells
 from andon.transport.probes.hidden import LEAST, NEIGHBOURS, hidden_mix, neighbours_of
 from andon.transport.probes.light import probe_coefficients, probe_illuminance, probe_mix
-from andon.transport.probes.octahedra import bilinear_taps, directions_of, square_of
 from andon.transport.probes.visibility import distance_map, visible
 from comparison import assert_agree
 
@@ -248,12 +249,11 @@ def test_where_all_is_hidden_the_cell_decides():
 
 
 def test_neighbours_share_an_edge():
-    light = light_of(volume_at(POSITIONS["lattice"], np.ones((64, 9, 3))))
-    around = neighbours_of(light.space, POSITIONS["lattice"])
+    around = neighbours_of(build_cells(POSITIONS["lattice"]), POSITIONS["lattice"])
     assert around.shape == (64, NEIGHBOURS)
     away = np.linalg.norm(POSITIONS["lattice"][around] - POSITIONS["lattice"][:, None], axis=-1)
     away = np.where(around >= 0, away, np.inf)
     assert (away[:, 1:3] >= away[:, :2]).all()
     assert away[:, :3].max() < 1.01  # each has its three or more neighbours along the axes
-    lonely = neighbours_of(light_of(random_volume(POSITIONS["single"])).space, np.zeros((1, 3)))
+    lonely = neighbours_of(build_cells(POSITIONS["single"]), np.zeros((1, 3)))
     assert (lonely == -1).all()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from andon.files.volumes import Distances, ProbeVolume, Zone
+from andon.files.volumes import Distances, plain_volume
 from andon.transport.probes.light import probe_light
 from andon.transport.probes.visibility import distance_map
 from worlds import unit
@@ -36,20 +36,10 @@ POSITIONS = {
 
 def volume_at(positions, coefficients, distances=None, zones=None):
     """`distances` are cube maps (n, 6, s, s) in metres."""
-    count = len(positions)
     pictures = None
     if distances is not None:
         pictures = Distances(*distance_map(distances, far_m=FAR_M), FAR_M)
-    return ProbeVolume(
-        positions=positions,
-        capture_positions=positions,
-        names=tuple(f"p{number}" for number in range(count)),
-        roles=("general",) * count,
-        ranges_m=np.full(count, np.inf),
-        states={"day": coefficients},
-        zones=zones or (Zone("all", np.arange(count, dtype=np.int32)),),
-        distances=pictures,
-    )
+    return plain_volume(positions, coefficients, state="day", zones=zones or (), distances=pictures)
 
 
 def random_volume(positions, order=2, seed=0, zones=None):

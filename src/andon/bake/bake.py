@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from andon.bake.digest import digest
 from andon.bake.journal import Journal, Result
-from andon.bake.places import far_m, zones_of
+from andon.bake.places import far_m
 from andon.bake.report import BakeReport
 from andon.bake.runner import Progress, Runner
 from andon.bake.task import PARTS, Look, Pictures, bounced, encoded, first_light
@@ -25,7 +25,7 @@ from andon.harmonics import deringed
 from andon.scene import Scene
 from andon.scene.probes import Probes
 from andon.surface.objects import joined
-from andon.transport.probes.placement import Placed, Walls
+from andon.transport.probes.placement import Placed, Walls, zones_of
 
 if TYPE_CHECKING:
     from andon.transport.probes.light import ProbeLight
@@ -93,7 +93,7 @@ class _Bake:
         self.journal = journal
         self.runner = Runner(journal, placed.names, progress)
         self.probes = _table(scene)
-        self.zones = zones_of(self.probes, placed, scene.file)
+        self.zones = zones_of(scene, placed.positions)
         self.cells = _cells(placed, self.zones)
         self.setting = _setting(scene, placed)
         self.look = self._looking(self.probes.cube_size_px, engine)
@@ -127,7 +127,10 @@ class _Bake:
         if self.recoded:
             recoded = self._recode(lit_by)
             coefficients[self.own] = [result["all"] for result in recoded]
-        return Baked(self._volume(coefficients, distances), self._report(first, recoded))
+        black = coefficients[:, 0] < 0
+        coefficients = np.where(black[:, None], 0.0, coefficients)
+        report = replace(self._report(first, recoded), black=int(np.count_nonzero(black)))
+        return Baked(self._volume(coefficients, distances), report)
 
     def _first(self) -> list[Result]:
         probes = self.probes
@@ -226,10 +229,19 @@ class _Bake:
         from andon.transport.probes.light import light_between
 
         volume = self._volume(light, distances)
-        # Where light is taken away a mean may be negative, and there is nothing to be smoothed.
-        can_ring = self.probes.dering and bool((light[:, 0] >= 0).all())
-        smooth = deringed(light) if can_ring else light
-        return light_between(volume, smooth)
+        return light_between(volume, self._smooth(light))
+
+    def _smooth(self, light: Float) -> Float:
+        """Without ringing, if that is asked for and light has one sign.
+
+        Where some is added and some taken away, illuminance may be negative on one side of a
+        probe without any ringing.
+        """
+        if not self.probes.dering:
+            return light
+        if self.setting is None or not self.setting.takes_away:
+            return deringed(light)
+        return -deringed(-light) if bool((light[:, 0] <= 0).all()) else light
 
     def _volume(self, coefficients: Float, distances: Distances | None) -> ProbeVolume:
         from andon import __version__

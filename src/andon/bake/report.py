@@ -23,6 +23,7 @@ class BakeReport:
     clipped : names of probes with light that 8 bits cut off (of panoramas: a sun, a lamp), and
         the largest share of the sphere that it is.
     negative : negative values of panoramas, counted as 0.
+    black : channels of probes that lose more light than there is, and are black.
     unphotographed_share : of what is seen of a photographed surface, the mean share that no
         photograph shows.
     """
@@ -41,4 +42,5 @@ class BakeReport:
     clipped: tuple[str, ...] = ()
     clipped_share: float = 0.0
     negative: int = 0
+    black: int = 0
     unphotographed_share: float = 0.0

@@ -7,12 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from andon.bake.places import zones_of
 from andon.errors import InputError
 from andon.files.volumes import ProbeVolume, Zone, read_volume, rounded
 from andon.scene import Scene
 from andon.scene.probes import Probes
-from andon.transport.probes.placement import Placed
+from andon.transport.probes.placement import Placed, zones_of
 from andon.transport.probes.states import with_state
 
 __all__ = ["check_states", "differences", "joined", "planned"]
@@ -28,7 +27,7 @@ def planned(scene: Scene, probes: Probes, placed: Placed, state: str, /) -> Prob
         placed.roles,
         placed.ranges_m,
         {state: dark},
-        zones_of(probes, placed, scene.file),
+        zones_of(scene, placed.positions),
         photometry=scene.photometry,
     )
 

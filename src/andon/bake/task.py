@@ -13,7 +13,7 @@ from andon.bake.panoramas import panorama_light
 from andon.engines.cubes import CubeEngine, CubeSetting
 from andon.harmonics import SolidAngle, coefficient_count, cube_directions, project_cube
 from andon.scene import Scene
-from andon.transport.probes.capture import Capture, captured, quantised
+from andon.transport.probes.capture import Capture, Seen, captured, quantised
 from andon.transport.probes.placement import Placed
 from andon.transport.probes.visibility import distance_map
 
@@ -119,7 +119,7 @@ def bounced(look: Look, placed: Placed, light: ProbeLight, index: int, /) -> Res
         seen,
         cube_directions(look.size),
         replace(look.setting.lighting, sky=()),
-        lux=_lux_of_probes(light, seen.position, seen.normal, seen.distance_m <= reach),
+        lux=_lux_of_probes(look, light, seen, reach),
         range_m=reach,
     )
     return {"reflected": look.projected(capture.reflected_cd_m2)}
@@ -140,8 +140,7 @@ def encoded(
     reach = float(placed.ranges_m[index])
     lux = np.zeros_like(seen.reflectance) if lux is None else lux
     if light is not None:
-        near = seen.distance_m <= reach
-        lux = lux + _lux_of_probes(light, seen.position, seen.normal, near)
+        lux = lux + _lux_of_probes(look, light, seen, reach)
     directions = cube_directions(look.size)
     capture = captured(seen, directions, look.setting.lighting, lux=lux, range_m=reach)
     codes, clipped = quantised(capture.luminance_cd_m2, white_cd_m2)
@@ -149,12 +148,14 @@ def encoded(
     return {"all": look.projected(codes), "clipped_share": np.array(share)}
 
 
-def _lux_of_probes(
-    light: ProbeLight, points: Float, normals: Float, own: NDArray[np.bool_]
-) -> Float:
-    """Illuminance (6, s, s, 3) that the probes give to the points that are `own`; else 0."""
+def _lux_of_probes(look: Look, light: ProbeLight, seen: Seen, reach_m: float) -> Float:
+    """Illuminance (6, s, s, 3) that the probes give to what lies within `reach_m`; else 0.
+
+    It is negative where light is missing that sources of E0 gave.
+    """
     from andon.transport.probes.light import probe_illuminance
 
-    lux = np.zeros_like(points)
-    lux[own] = probe_illuminance(light, points[own], normals[own])
+    own, signed = seen.distance_m <= reach_m, look.setting.takes_away
+    lux = np.zeros_like(seen.reflectance)
+    lux[own] = probe_illuminance(light, seen.position[own], seen.normal[own], signed=signed)
     return lux

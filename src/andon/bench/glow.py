@@ -12,7 +12,7 @@ from andon.glow.model import Glow
 from andon.glow.stage import GlowStage
 from andon.gpu.device import open_gpu
 from andon.gpu.textures import make_texture
-from andon.spaces import View
+from andon.spaces import pinhole_view
 
 __all__ = ["ROWS"]
 
@@ -40,7 +40,7 @@ def _against_opencv(sigma_px: float) -> Duel:
     import cv2
 
     gpu, bodies = open_gpu(), _bodies()
-    view = View("pinhole", WIDTH, HEIGHT, FOCAL_PX, FOCAL_PX, WIDTH / 2 - 0.5, HEIGHT / 2 - 0.5)
+    view = pinhole_view(WIDTH, HEIGHT, FOCAL_PX)
     source = make_texture(gpu, "rgba16float", WIDTH, HEIGHT, label="bodies")
     target = make_texture(gpu, "rgba16float", WIDTH, HEIGHT, label="light")
     source.write(np.dstack([bodies, np.ones(view.shape, np.float32)]))

@@ -125,6 +125,11 @@ def _notes(written: Written) -> list[str]:
         )
     if report.negative:
         notes.append(f"{report.negative} values of panoramas are negative and count as 0")
+    if report.black:
+        notes.append(
+            f"in {report.black} channels of probes more light is taken away than there is: they "
+            "are black; check the light of ambient.source"
+        )
     if report.unphotographed_share > 0:
         notes.append(
             f"{report.unphotographed_share:.1%} of the photographed surface that probes see is in "

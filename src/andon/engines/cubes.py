@@ -20,9 +20,11 @@ from numpy.typing import NDArray
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.errors import InputError, MachineError
+from andon.harmonics.cubes import face_directions
 from andon.lamps import HemisphereLamp, Lamp, SkyLamp
+from andon.lamps.model import LIGHT_FIELDS
 from andon.quantities import CameraFrame, Geometry
-from andon.spaces import View
+from andon.spaces import View, pinhole_view
 from andon.surface import reference as surface
 from andon.surface.model import SurfaceModel
 from andon.transport.probes.capture import Lighting, Seen
@@ -42,19 +44,17 @@ __all__ = [
 
 Float = NDArray[np.float64]
 
-# Right, down and forward of each face's camera: the faces' axes with u turned round, since a cube
-# map is mirrored as seen from inside and a camera is not.
-_AXES = np.array(
-    [
-        [(0, 0, 1), (0, -1, 0), (1, 0, 0)],
-        [(0, 0, -1), (0, -1, 0), (-1, 0, 0)],
-        [(-1, 0, 0), (0, 0, 1), (0, 1, 0)],
-        [(-1, 0, 0), (0, 0, -1), (0, -1, 0)],
-        [(-1, 0, 0), (0, -1, 0), (0, 0, 1)],
-        [(1, 0, 0), (0, -1, 0), (0, 0, -1)],
-    ],
-    float,
-)
+
+def _poses() -> Float:
+    """(6, 3, 3) right, down and forward of each face's camera, as columns.
+
+    The faces' axes with u turned round, since a cube map is mirrored as seen from inside and a
+    camera is not.
+    """
+    forward, along_u, along_v = np.moveaxis(
+        face_directions(np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])), 1, 0
+    )
+    return np.stack([forward - along_u, along_v - forward, forward], axis=-1)
 
 
 def cube_views(position: NDArray[Any], size: int, /) -> tuple[View, ...]:
@@ -64,13 +64,10 @@ def cube_views(position: NDArray[Any], size: int, /) -> tuple[View, ...]:
     of `cube_directions` does.
     """
     views: list[View] = []
-    for axes in _AXES:
+    for axes in _poses():
         pose = np.eye(4)
-        pose[:3, :3], pose[:3, 3] = axes.T, position
-        middle = (size - 1) / 2
-        views.append(
-            View("pinhole", size, size, size / 2, size / 2, middle, middle, (), pose, "probe")
-        )
+        pose[:3, :3], pose[:3, 3] = axes, position
+        views.append(pinhole_view(size, size, size / 2, pose, name="probe"))
     return tuple(views)
 
 
@@ -91,6 +88,7 @@ class CubeSetting:
     lighting : all other light.
     prepared : where it is from.
     emits : something gives light of itself: a material, or the sky.
+    takes_away : some light is negative: sources of E0 that are gone, or hidden.
     """
 
     surface: SurfaceModel
@@ -99,6 +97,7 @@ class CubeSetting:
     lighting: Lighting
     prepared: Prepared
     emits: bool
+    takes_away: bool = False
 
     @property
     def geometry(self) -> tuple[Geometry, ...]:
@@ -161,7 +160,13 @@ def cube_setting(scene: Scene, prepared: Prepared, /) -> CubeSetting:
         Lighting(lux, photograph, sky),
         prepared,
         emits,
+        any(_is_negative(lamp) for lamp in lamps),
     )
+
+
+def _is_negative(lamp: Lamp) -> bool:
+    light = (getattr(lamp, key, None) for key in LIGHT_FIELDS)
+    return any(bool((np.asarray(values) < 0).any()) for values in light if values is not None)
 
 
 def cube_engine(setting: CubeSetting, size: int, /, engine: str = "auto") -> CubeEngine:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.gpu.layout import HostStruct
+from andon.octahedra import directions_of, square_of
 from andon.quantities import Surface
 from andon.spaces import View
 
@@ -115,11 +116,7 @@ def pack_surface(surface: Surface, /) -> NDArray[np.uint32]:
 
 
 def _octahedral(normal: NDArray[np.float64]) -> NDArray[np.uint32]:
-    length: NDArray[np.float64] = np.abs(normal).sum(axis=-1, keepdims=True)
-    p: NDArray[np.float64] = normal[..., :2] / length
-    folded: NDArray[np.float64] = (1 - np.abs(p[..., ::-1])) * np.copysign(1.0, p)
-    e = np.asarray(np.where(normal[..., 2:] >= 0, p, folded), np.float64)
-    signed = np.asarray(np.rint(np.clip(e, -1, 1) * 32767), np.int16)
+    signed = np.asarray(np.rint(np.clip(square_of(normal), -1, 1) * 32767), np.int16)
     bits = np.asarray(signed.view(np.uint16), np.uint32)
     return bits[..., 0] | (bits[..., 1] << np.uint32(16))
 
@@ -129,16 +126,13 @@ def unpack_surface(packed: NDArray[np.uint32], view: View, /) -> dict[str, NDArr
     halves = np.stack([packed[..., 1] & 0xFFFF, packed[..., 1] >> 16], axis=-1)
     signed: NDArray[np.int16] = halves.astype(np.uint16).view(np.int16)
     e: NDArray[np.float64] = np.maximum(np.asarray(signed, np.float64) / 32767.0, -1.0)
-    z = 1 - np.abs(e).sum(axis=-1, keepdims=True)
-    xy = np.where(z >= 0, e, (1 - np.abs(e[..., ::-1])) * np.where(e >= 0, 1.0, -1.0))
-    normal = np.concatenate([xy, z], axis=-1)
     valid = (packed[..., 3] & VALID) > 0
     codes = np.stack([(packed[..., 2] >> shift) & 255 for shift in (0, 8, 16)], axis=-1)
     material = ((packed[..., 3] >> MATERIAL_SHIFT) & 0xFFFF).astype(np.int32)
     body = ((packed[..., 3] >> BODY_SHIFT) & 0xFF).astype(np.int32) - 1
     return {
         "depth": np.where(valid, packed[..., 0].view(np.float32), np.nan),
-        "normal": normal / np.linalg.norm(normal, axis=-1, keepdims=True),
+        "normal": directions_of(e),
         "reflectance": (codes / 255.0) ** 2,
         "valid": valid,
         "is_object": (packed[..., 3] & OBJECT) > 0,

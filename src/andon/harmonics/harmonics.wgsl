@@ -41,11 +41,3 @@ fn high_terms(n: vec3f) -> NineTerms {
     0.625835735449176 * (s.x * (s.x - 3.0 * s.y) - s.y * (3.0 * s.x - s.y)),
   );
 }
-
-// Σ light·Y(n). `light` is convolved with the cosine, in lux, so the sum is the irradiance of a
-// surface that faces n: E, not E/π; below zero where it rings.
-fn irradiance_l2(light: array<vec3f, 9>, n: vec3f) -> vec3f {
-  let y = low_terms(n);
-  return y.a.x * light[0] + y.a.y * light[1] + y.a.z * light[2] + y.a.w * light[3]
-    + y.b.x * light[4] + y.b.y * light[5] + y.b.z * light[6] + y.b.w * light[7] + y.c * light[8];
-}

@@ -20,7 +20,7 @@ from andon.surface.depth import DepthEncoding, depth_from_raw
 from andon.surface.meshes import check_textures, read_geometry, rest_note
 from andon.surface.model import ShadowBias, SurfaceModel
 from andon.surface.normals import normals_from_depth
-from andon.surface.objects import load_objects, objects_bias
+from andon.surface.objects import load_objects
 from andon.surface.occluder import decimated
 from andon.surface.triangulate import thickened, triangulate_depth
 
@@ -28,8 +28,8 @@ __all__ = ["load_surface", "mesh_geometry", "surface_of_depth", "surface_of_mesh
 
 Float = NDArray[np.float64]
 
-# Lift of receivers before a shadow is looked up: float32 rounding for meshes, more than stereo
-# and structured light scatter for depth images, and twice the decimation's own error. Twice,
+# Least lift of receivers before a shadow is looked up: float32 rounding for meshes, more than
+# stereo and structured light scatter for depth images, and twice the decimation's own error. Twice,
 # since that error is a 95th percentile of unsigned distances: the worst of the other 5 % lie
 # about twice as far, and lamps look at them at a slant. Measured against shadows of all
 # triangles, the sum of false and lost shadows is smallest at 1.9 times the error on the
@@ -79,7 +79,6 @@ def load_surface(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
         casters=objects.casters,
         objects_table=objects.objects_table,
         movers=objects.movers,
-        bias=objects_bias(model.bias, objects),
         notes=(*model.notes, *objects.notes),
     )
 

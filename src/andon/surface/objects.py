@@ -18,18 +18,11 @@ from andon.scene import Scene
 from andon.scene.keyframes import object_at
 from andon.scene.objects import SceneObject
 from andon.surface.meshes import check_textures, read_geometry, rest_note
-from andon.surface.model import EMPTY_GEOMETRY, ObjectInfo, ShadowBias, SurfaceModel
+from andon.surface.model import EMPTY_GEOMETRY, ObjectInfo, SurfaceModel
 from andon.surface.movers import Mover, Play
 from andon.surface.textures import with_linear_textures
 
-__all__ = ["joined", "load_objects", "object_geometry", "objects_bias"]
-
-# Lift of receivers on virtual objects with smooth normals. A shadow map's texel shows a triangle
-# beside the one that is lit, which the plane of the shading normal does not meet. Measured on a
-# skinned figure of 4672 triangles, 2.5 m from a lamp with a map of 1024²: of what is lit, 10.2 %
-# goes dark with a lift of 0.2 mm, 4.0 % with 0.5, 0.7 % with 1 and 0.08 % with 2; 4 mm adds false
-# light only.
-SMOOTH_BIAS_M = 2e-3
+__all__ = ["joined", "load_objects", "object_geometry"]
 
 
 @dataclass(frozen=True)
@@ -66,22 +59,6 @@ def load_objects(scene: Scene, /) -> SurfaceModel:
         # One file may stand in several places.
         notes=tuple(dict.fromkeys(note for one in read for note in one.notes)),
     )
-
-
-def objects_bias(bias: ShadowBias, objects: SurfaceModel, /) -> ShadowBias:
-    """The lift that `objects` need, instead of that for flat triangles."""
-    drawn = (objects.objects, *(mover.geometry for mover in objects.movers))
-    if not any(_is_smooth(geometry) for geometry in drawn):
-        return bias
-    return replace(bias, object_m=max(bias.object_m, SMOOTH_BIAS_M))
-
-
-def _is_smooth(geometry: Geometry) -> bool:
-    """Some triangle has several normals."""
-    if geometry.normals is None:
-        return False
-    corners = geometry.normals[geometry.triangles]
-    return bool((corners != corners[:, :1]).any())
 
 
 def object_geometry(scene: Scene, index: int, time_seconds: float = 0.0, /) -> Geometry:

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.files.volumes import Distances, ProbeVolume, Zone
+from andon.files.volumes import Distances, ProbeVolume, plain_volume
 from andon.harmonics import cube_directions, project_cube
 from andon.quantities import Geometry, Material
 from andon.rays import RayScene, face_normals
@@ -210,14 +210,4 @@ def volume_of(room: LitRoom, places: Float, *, cube_size: int = 32, side: int = 
     """Probes captured at `places` (n, 3), with distances of `side` texels."""
     coefficients, distances = room.captured(places, cube_size)
     mean, mean_square = distance_map(distances, side, far_m=FAR_M)
-    count = len(places)
-    return ProbeVolume(
-        positions=places,
-        capture_positions=places,
-        names=tuple(f"probe {number}" for number in range(count)),
-        roles=("general",) * count,
-        ranges_m=np.full(count, np.inf),
-        states={"default": coefficients},
-        zones=(Zone("all", np.arange(count, dtype=np.int32)),),
-        distances=Distances(mean, mean_square, FAR_M),
-    )
+    return plain_volume(places, coefficients, distances=Distances(mean, mean_square, FAR_M))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.files.volumes import plain_volume
 from andon.files.volumes.model import ProbeVolume, Zone
 
 __all__ = ["clustered", "degenerate_sets", "full_sets", "lattice", "uniform", "volume_of"]
@@ -36,17 +37,8 @@ def clustered(count: int, /) -> Float:
 
 def volume_of(positions: Float, zones: tuple[Zone, ...] = (), /) -> ProbeVolume:
     """A volume of `positions` (n, 3) with random light in [0, 1) cd/m², seeded."""
-    count = len(positions)
-    light = np.random.default_rng(27).uniform(size=(count, 9, 3))
-    return ProbeVolume(
-        positions=positions,
-        capture_positions=positions,
-        names=tuple(f"probe {number}" for number in range(count)),
-        roles=("general",) * count,
-        ranges_m=np.full(count, np.inf),
-        states={"default": light},
-        zones=zones or (Zone("all", np.arange(count, dtype=np.int32)),),
-    )
+    light = np.random.default_rng(27).uniform(size=(len(positions), 9, 3))
+    return plain_volume(positions, light, zones=zones)
 
 
 def _turn() -> Float:

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.quantities import LUMINANCE_WEIGHTS, Geometry
-from andon.spaces import View, look_at
+from andon.spaces import View, look_at, pinhole_view
 from andon.verify.furniture import Part, room_parts
 from andon.verify.solids import Solid, facet_normals
 
@@ -137,16 +137,7 @@ def camera_in(room: Geometry, /, width: int = 1280, height: int = 720) -> View:
     eye = low + (high - low) * [0.06, 0.55, 0.94]
     target = low + (high - low) * [0.66, 0.24, 0.32]
     focal = width / 2 / np.tan(np.radians(75 / 2))
-    return View(
-        "pinhole",
-        width,
-        height,
-        fx=focal,
-        fy=focal,
-        cx=(width - 1) / 2,
-        cy=(height - 1) / 2,
-        world_from_camera=look_at(eye, target),
-    )
+    return pinhole_view(width, height, focal, look_at(eye, target))
 
 
 def random_view(seed: int, width: int = 160, height: int = 90) -> View:
@@ -156,16 +147,7 @@ def random_view(seed: int, width: int = 160, height: int = 90) -> View:
     heading, rise = generator.uniform(-np.pi, np.pi), generator.uniform(-1.0, 1.0)
     forward = [np.cos(rise) * np.sin(heading), np.sin(rise), -np.cos(rise) * np.cos(heading)]
     focal = width / 2 / np.tan(np.radians(generator.uniform(40, 100) / 2))
-    return View(
-        "pinhole",
-        width,
-        height,
-        fx=focal,
-        fy=focal,
-        cx=(width - 1) / 2,
-        cy=(height - 1) / 2,
-        world_from_camera=look_at(eye, eye + forward),
-    )
+    return pinhole_view(width, height, focal, look_at(eye, eye + forward))
 
 
 def lamps_in(room: Geometry, n: int, /, seed: int = 11) -> list[RoomLamp]:

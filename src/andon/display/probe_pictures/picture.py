@@ -19,10 +19,10 @@ from andon.display.probe_pictures.solids import (
 )
 from andon.display.reference import tone_curve
 from andon.errors import InputError
-from andon.files.volumes.model import Cells, ProbeRole, ProbeVolume
+from andon.files.volumes.model import ProbeRole, ProbeVolume, simplex_edges
 from andon.quantities import Geometry
 from andon.responses import SRGB, srgb_decode
-from andon.spaces import View, look_at, transform_points
+from andon.spaces import View, look_at, pinhole_view, transform_points
 
 __all__ = ["around_view", "probe_picture"]
 
@@ -82,10 +82,7 @@ def around_view(
         eye, middle = _fitted(points, middle if target is None else target, back, focal, size)
         target = middle if target is None else target
     pose = look_at(eye, middle if target is None else target)
-    return View(
-        "pinhole", width, height, focal, focal, width / 2 - 0.5, height / 2 - 0.5,
-        world_from_camera=pose,
-    )  # fmt: skip
+    return pinhole_view(width, height, focal, pose)
 
 
 def _fitted(
@@ -189,24 +186,17 @@ def _radius(positions: Float) -> float:
     return min(BALL_SHARE * usual, BALL_MOST_SHARE * size)
 
 
-def _edges(corners: NDArray[np.int32]) -> NDArray[np.int32]:
-    """(e, 2) the different edges of simplices (m, k)."""
-    pairs = [corners[:, list(pair)] for pair in combinations(range(corners.shape[1]), 2)]
-    edges = np.unique(np.sort(np.concatenate(pairs), axis=1), axis=0)
-    return edges[edges[:, 0] != edges[:, 1]]
-
-
 def _draw_lines(canvas: Canvas, volume: ProbeVolume, look: Look) -> None:
     cells, places = volume.cells, volume.positions
     if cells is not None:
         if "cells" in look.parts and len(cells.corners):
-            ends = places[_edges(cells.corners)]
+            ends = places[simplex_edges(cells.corners)]
             canvas.lines(ends, _linear(CELL), width_px=CELL_PX * OVERSAMPLING, ink=0.85)
         if "hull" in look.parts and len(cells.facets):
-            ends = places[_edges(cells.facets)]
+            ends = places[simplex_edges(cells.facets)]
             canvas.lines(ends, _linear(HULL), width_px=HULL_PX * OVERSAMPLING, ink=0.95)
         if "graph" in look.parts and len(cells.corners):
-            ends = _graph(cells, places)
+            ends = places[cells.corners].mean(axis=1)[cells.adjacent]
             canvas.lines(ends, _linear(GRAPH), width_px=GRAPH_PX * OVERSAMPLING)
     if "zones" in look.parts:
         for index, zone in enumerate(volume.zones):
@@ -214,15 +204,6 @@ def _draw_lines(canvas: Canvas, volume: ProbeVolume, look: Look) -> None:
                 ends = np.concatenate([_box_edges(box) for box in zone.boxes])
                 colour = _linear(ZONES[index % len(ZONES)])
                 canvas.lines(ends, colour, width_px=ZONE_PX * OVERSAMPLING)
-
-
-def _graph(cells: Cells, places: Float) -> Float:
-    """(e, 2, 3) lines between the middles of cells that share a face."""
-    middles = places[cells.corners].mean(axis=1)
-    cell, side = np.nonzero(cells.neighbours >= 0)
-    other = cells.neighbours[cell, side]
-    once = cell < other
-    return np.stack([middles[cell[once]], middles[other[once]]], axis=1)
 
 
 def _box_edges(box: Float) -> Float:
@@ -249,7 +230,7 @@ def _entries(volume: ProbeVolume, look: Look) -> list[Entry]:
         if "hull" in look.parts:
             entries.append((HULL, f"hull of {len(cells.facets)} faces"))
         if "graph" in look.parts:
-            entries.append((GRAPH, f"{len(_graph(cells, volume.positions))} neighbours"))
+            entries.append((GRAPH, f"{len(cells.adjacent)} neighbours"))
     if "zones" in look.parts:
         entries += [
             (ZONES[index % len(ZONES)], zone.name)

@@ -21,7 +21,14 @@ from __future__ import annotations
 
 from andon.files.reader import Reader
 from andon.files.volumes.check import check_volume
-from andon.files.volumes.model import Cells, Distances, ProbeRole, ProbeVolume, Zone
+from andon.files.volumes.model import (
+    Cells,
+    Distances,
+    ProbeRole,
+    ProbeVolume,
+    Zone,
+    plain_volume,
+)
 from andon.files.volumes.read import read_volume
 from andon.files.volumes.rounded import rounded
 from andon.files.volumes.write import write_volume
@@ -34,6 +41,7 @@ __all__ = [
     "ProbeVolume",
     "Zone",
     "check_volume",
+    "plain_volume",
     "read_volume",
     "rounded",
     "write_volume",

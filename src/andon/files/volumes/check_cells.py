@@ -13,14 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.files.volumes.model import Cells, Zone
+from andon.files.volumes.model import FACES, Cells, Zone
 
 __all__ = ["check_cells"]
 
 Int = NDArray[np.int64]
 Refuse = Callable[[str, str], InputError]
-# Corners of the face (of a facet: of the edge) opposite each corner.
-FACES = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
+# Corners of the edge opposite each corner of a facet.
 EDGES = np.array([[1, 2], [0, 2], [0, 1]])
 
 

@@ -11,11 +11,23 @@ from numpy.typing import NDArray
 
 from andon.quantities import Photometry
 
-__all__ = ["Cells", "Distances", "ProbeRole", "ProbeVolume", "Zone"]
+__all__ = [
+    "FACES",
+    "Cells",
+    "Distances",
+    "ProbeRole",
+    "ProbeVolume",
+    "Zone",
+    "plain_volume",
+    "simplex_edges",
+]
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
 ProbeRole = Literal["general", "sky", "bounce", "bleeding"]
+
+# Corners of the face opposite each corner of a tetrahedron, counter-clockwise from outside.
+FACES = np.array([[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +72,38 @@ class Cells:
     facet_cells: Int
     zone_cells: Int
     zone_facets: Int
+
+    @property
+    def edges(self) -> Int:
+        """(e, 2) pairs of probes that an edge joins, each once, the lower number first, in order.
+
+        Ways from probe to probe: the probes paper remarks that its tetrahedra would serve path
+        finding too.
+        """
+        return _pairs(np.concatenate([simplex_edges(self.corners), simplex_edges(self.facets)]))
+
+    @property
+    def adjacent(self) -> Int:
+        """(e, 2) pairs of tetrahedra with a common face, each once, the lower number first."""
+        own = np.repeat(np.arange(len(self.corners), dtype=np.int32), 4)
+        pairs = np.column_stack([own, self.neighbours.ravel()])
+        return pairs[pairs[:, 0] < pairs[:, 1]].astype(np.int32)
+
+
+def simplex_edges(corners: Int, /) -> Int:
+    """(e, 2) the different edges of simplices (m, k), each once, rising, in order."""
+    pairs = [corners[:, [i, j]] for j in range(corners.shape[1]) for i in range(j)]
+    return _pairs(np.concatenate(pairs))
+
+
+def _pairs(pairs: Int) -> Int:
+    """Those of two different numbers, each once, rising, in order."""
+    ends = np.sort(pairs, axis=1).astype(np.int64)
+    # Pieces of a line have an edge of no length.
+    ends = ends[ends[:, 0] < ends[:, 1]]
+    count = int(ends.max(initial=0)) + 1
+    first, second = np.divmod(np.unique(ends[:, 0] * count + ends[:, 1]), count)
+    return np.column_stack([first, second]).astype(np.int32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,3 +177,34 @@ class ProbeVolume:
         """Highest band of the harmonics."""
         first = next(iter(self.states.values()))
         return round(first.shape[1] ** 0.5) - 1
+
+
+def plain_volume(
+    positions: Float,
+    coefficients: Float,
+    /,
+    *,
+    state: str = "default",
+    zones: tuple[Zone, ...] = (),
+    cells: Cells | None = None,
+    distances: Distances | None = None,
+    photometry: Photometry = "absolute",
+) -> ProbeVolume:
+    """A volume of light (n, k, 3) in cd/m² at `positions` (n, 3) in metres: one state, no roles.
+
+    Probes count where they were captured, without a limit; of no zones stated there is one, which
+    is all of space.
+    """
+    count = len(positions)
+    return ProbeVolume(
+        positions=positions,
+        capture_positions=positions,
+        names=tuple(f"probe {number}" for number in range(count)),
+        roles=("general",) * count,
+        ranges_m=np.full(count, np.inf),
+        states={state: coefficients},
+        zones=zones or (Zone("all", np.arange(count, dtype=np.int32)),),
+        cells=cells,
+        distances=distances,
+        photometry=photometry,
+    )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from andon.files.volumes.model import Cells, ProbeVolume, Zone
 
-__all__ = ["rounded"]
+__all__ = ["in_single", "rounded"]
 
 
 def rounded(volume: ProbeVolume) -> ProbeVolume:
@@ -23,10 +23,10 @@ def rounded(volume: ProbeVolume) -> ProbeVolume:
     cells = volume.cells
     return replace(
         volume,
-        positions=_rounded(volume.positions),
-        capture_positions=_rounded(volume.capture_positions),
-        ranges_m=_rounded(volume.ranges_m),
-        states={name: _rounded(values) for name, values in volume.states.items()},
+        positions=in_single(volume.positions),
+        capture_positions=in_single(volume.capture_positions),
+        ranges_m=in_single(volume.ranges_m),
+        states={name: in_single(values) for name, values in volume.states.items()},
         zones=tuple(
             Zone(zone.name, np.asarray(zone.probes, np.int32), _boxes(zone))
             for zone in volume.zones
@@ -35,7 +35,8 @@ def rounded(volume: ProbeVolume) -> ProbeVolume:
     )
 
 
-def _rounded(values: NDArray[Any]) -> NDArray[np.float64]:
+def in_single(values: NDArray[Any], /) -> NDArray[np.float64]:
+    """The values rounded to float32, as float64."""
     with np.errstate(over="ignore", invalid="ignore"):  # what is too large is refused as inf
         return np.asarray(values, np.float32).astype(np.float64)
 

@@ -20,9 +20,6 @@ __all__ = ["volume_bytes", "write_volume"]
 
 UNLIT = "KHR_materials_unlit"
 POINTS, LINES = 0, 1  # mesh.primitive.mode
-# Corners of the edges of a tetrahedron and of a triangle.
-CELL_EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
-FACET_EDGES = ((0, 1), (0, 2), (1, 2))
 
 
 def write_volume(path: str | Path, volume: ProbeVolume) -> Path:
@@ -138,7 +135,7 @@ def _primitives(volume: ProbeVolume, positions: int, arrays: GlbArrays) -> list[
     shared = {"attributes": {"POSITION": positions, "COLOR_0": colours}, "material": 0}
     primitives: list[dict[str, Any]] = [{**shared, "mode": POINTS}]
     if volume.cells is not None:
-        edges = _edges(volume.cells)
+        edges = volume.cells.edges.astype(np.uint32)
         if len(edges):
             indices = arrays.add(edges.ravel(), target=INDICES)
             primitives.append({**shared, "mode": LINES, "indices": indices})
@@ -154,14 +151,3 @@ def _colours(volume: ProbeVolume) -> NDArray[np.float32]:
     mean = first[:, 0] / np.sqrt(4 * np.pi)
     middle = float(np.median(mean.mean(axis=1)))
     return _float32(mean / (mean + middle) if middle > 0 else np.where(mean > 0, 1.0, 0.0))
-
-
-def _edges(cells: Cells) -> NDArray[np.uint32]:
-    """(e, 2) rising pairs of probes, each once, in rising order."""
-    pairs = [cells.corners[:, list(pair)] for pair in CELL_EDGES]
-    pairs += [cells.facets[:, list(pair)] for pair in FACET_EDGES]
-    ends = np.sort(np.concatenate(pairs), axis=1).astype(np.int64)
-    ends = ends[ends[:, 0] < ends[:, 1]]  # pieces of a line have an edge of no length
-    count = int(ends.max(initial=0)) + 1
-    keys = np.unique(ends[:, 0] * count + ends[:, 1])
-    return np.stack([keys // count, keys % count], axis=1).astype(np.uint32)

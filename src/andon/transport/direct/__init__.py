@@ -25,11 +25,14 @@ dual paraboloid, rasterised     1              2 faces                     7 tex
 
 Soft shadows
     An area lamp is seen from points on it, each with a small pair of paraboloids; see `soft`.
-Acne without a fudge factor
+Acne
     A shadow map knows its depth at texel *centres* only. Instead of a bias that grows with slope,
     the receiver's own plane is extended to the texel's centre and compared there: exact for plane
-    receivers. What remains is a lift along the normal by `ShadowBias`, for what decimation and
-    noise leave between surface and occluder.
+    receivers. Curved ones have normals that are interpolated over their facets, so the plane is not
+    the facet's, and every receiver is lifted along its normal by a texel, at the place where it is
+    (figures in direct.wgsl; of soft shadows a quarter). Where `ShadowBias` is larger, for what
+    decimation and noise leave between surface and occluder, that is the lift. Exact shadows ask
+    triangles: they need no texel.
 
 Sources: the relighting paper, section 2.1, equation (1); Brabec, Annen & Seidel 2002 (dual
 paraboloid shadow maps); glTF 2.0 KHR_lights_punctual (spot falloff).

@@ -18,7 +18,22 @@ const NEAREST_M: f32 = 1e-3;
 const SAME_DEPTH: f32 = 2e-5;
 
 // A shadow query: what a filter needs to ask the map at one texel. `reach` = P − lamp,
-// `away` = normal·reach < 0, lifted by the bias.
+// `away` = normal·reach < 0, lifted by the bias, and by a texel at least.
+//
+// Why a texel: the receiver's plane is that of its shading normal. Its own facet bends away from
+// that plane, and other facets beside it from both, by less than a texel within a texel. Share of
+// pixels of which shadows are false (acne) + lost, in %, on virtual objects, against rays, 1024²:
+//
+//   lift in texels             0              ½              1              1½
+//   ball of 320, sun     42.7 + 0.1      0.0 + 0.1      0.0 + 0.1      0.0 + 0.1
+//   torus, point         43.0 + 0.1      0.0 + 0.2      0.0 + 0.2      0.0 + 0.2
+//   walker, sun           1.1 + 0.4      0.5 + 0.4      0.5 + 0.4      0.5 + 0.4
+//   walker, point         0.9 + 0.7      0.6 + 0.8      0.6 + 0.8      0.6 + 0.8
+//   boxes, sun            9.4 + 0.3      3.3 + 0.3      0.7 + 0.3      0.6 + 0.3
+//   furniture, sun        0.9 + 0.6      0.7 + 0.6      0.6 + 0.6      0.6 + 0.6
+//   thin plates, low sun  1.1 + 0.8      0.8 + 0.8      0.6 + 0.9      0.3 + 1.1
+//
+// Boxes and plates err at creases, where the plane of one wall runs on behind the other.
 struct Receiver {
   lamp: i32,
   layer: i32,
@@ -48,7 +63,8 @@ fn point_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias
   let inverse = 1.0 / max(distance, NEAREST_M);
   let away = dot(normal, reach);
   let place = reach.xy * (0.5 * MAP_SIZE / max(distance + abs(reach.z), 1e-9)) + 0.5 * MAP_SIZE;
-  let seen = paraboloid_share(Receiver(lamp, layer, reach, normal, away + bias), place);
+  let lift = max(bias, PARABOLOID_LIFT_TEXELS * paraboloid_texel_m(distance, MAP_SIZE));
+  let seen = paraboloid_share(Receiver(lamp, layer, reach, normal, away + lift), place);
   let lit = select(seen, 1.0, layer < 0);
   return lamps[lamp].light * (max(-away, 0.0) * inverse * inverse * inverse * lit);
 }
@@ -81,7 +97,8 @@ fn spot_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias:
   let along = dot(record.axis, reach);
   let tangent = vec2f(dot(record.right, reach), dot(record.down, reach)) / along;
   let place = (tangent / record.half_width * 0.5 + 0.5) * MAP_SIZE;
-  let seen = spot_share(Receiver(lamp, layer, reach, normal, away + bias), place);
+  let lift = max(bias, along * record.half_width * (2.0 / MAP_SIZE));
+  let seen = spot_share(Receiver(lamp, layer, reach, normal, away + lift), place);
   let lit = cone_ramp(lamp, along * inverse) * select(seen, 1.0, layer < 0);
   return record.light * (max(-away, 0.0) * inverse * inverse * inverse * lit);
 }
@@ -104,7 +121,8 @@ fn directional_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f
   let reach = position - record.position;
   let at = vec2f(dot(record.right, reach), dot(record.down, reach)) / record.half_width;
   let place = (at * 0.5 + 0.5) * MAP_SIZE;
-  let seen = directional_share(Receiver(lamp, layer, reach, normal, bias), place);
+  let lift = max(bias, record.half_width * (2.0 / MAP_SIZE));
+  let seen = directional_share(Receiver(lamp, layer, reach, normal, lift), place);
   let beyond = layer < 0 || any(abs(at) > vec2f(1.0));
   let lit = select(seen, 1.0, beyond);
   return record.light * (max(-dot(record.axis, normal), 0.0) * lit);

@@ -10,6 +10,12 @@
 
 const LEAST_COSINE: f32 = 1e-4;
 
+// The lift of `Receiver`. These maps are coarse, and lamps in them are near and many: RMSE against
+// Radiance with 64 samples is 0.045 without a lift, 0.043 for ¼ texel, 0.048 for ½, 0.067 for 1
+// (relight.soft.rmse). A quarter is enough on curved objects: none of a torus is falsely dark, of
+// which 61 % are without.
+const SOFT_LIFT_TEXELS: f32 = 0.25;
+
 // What one sample gives to a receiver, up to a factor; `reach` = receiver − sample.
 fn sample_weight(record: SampleRecord, reach: vec3f, away: f32) -> vec3f {
   let inverse = inverseSqrt(max(dot(reach, reach), 1e-12));
@@ -32,8 +38,10 @@ fn softened(light: vec3f, wanted: vec3i, position: vec3f, normal: vec3f, bias: f
     let reach = position - record.point;
     let away = dot(normal, reach);
     let weight = sample_weight(record, reach, away);
-    let place = reach.xy * (0.5 * SOFT_MAP_SIZE / (length(reach) + abs(reach.z) + 1e-9)) + 0.5 * SOFT_MAP_SIZE;
-    let receiver = Receiver(0, 2 * (wanted.x + i), reach, normal, away + bias);
+    let distance = length(reach);
+    let place = reach.xy * (0.5 * SOFT_MAP_SIZE / (distance + abs(reach.z) + 1e-9)) + 0.5 * SOFT_MAP_SIZE;
+    let lift = max(bias, SOFT_LIFT_TEXELS * paraboloid_texel_m(distance, SOFT_MAP_SIZE));
+    let receiver = Receiver(0, 2 * (wanted.x + i), reach, normal, away + lift);
     let share = soft_sample_share(receiver, place);
     arrives += weight * share;
     whole += weight;

@@ -17,11 +17,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["FACES", "Hull", "Tangle", "face_neighbours", "facet_neighbours", "hull_of", "rings"]
+from andon.files.volumes.model import FACES
+
+__all__ = ["Hull", "Tangle", "face_neighbours", "facet_neighbours", "hull_of", "rings"]
 
 Int = NDArray[np.int32]
-
-FACES = np.array([[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]])
 
 
 class Tangle(ValueError):

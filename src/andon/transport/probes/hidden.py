@@ -65,13 +65,9 @@ def walls_of(volume: ProbeVolume, cells: Cells, /) -> Walls | None:
 
 def neighbours_of(cells: Cells, positions: Float, /) -> Int:
     """(n, 8) the nearest probes that share an edge with each of n, near to far; −1: no more."""
-    pairs = [cells.corners[:, [i, j]] for i in range(4) for j in range(i)]
-    pairs += [cells.facets[:, [i, j]] for i in range(3) for j in range(i)]
-    edges = np.concatenate(pairs).astype(np.int64)
-    edges = edges[edges[:, 0] != edges[:, 1]]
-    edges = np.unique(np.concatenate([edges, edges[:, ::-1]]), axis=0)
+    edges = np.concatenate([cells.edges, cells.edges[:, ::-1]])
     length = np.linalg.norm(positions[edges[:, 0]] - positions[edges[:, 1]], axis=1)
-    order = np.lexsort((length, edges[:, 0]))
+    order = np.lexsort((edges[:, 1], length, edges[:, 0]))
     edges = edges[order]
     rank = np.arange(len(edges)) - np.searchsorted(edges[:, 0], edges[:, 0])
     near = rank < NEIGHBOURS

@@ -1,6 +1,6 @@
 // Irradiance from coefficients that are convolved with the cosine already: Σ c·Y(n), of bands 0, 1,
-// 2 and, where the volume has it, 4; the cosine has no band 3. Seven texels hold nine coefficients of three channels:
-// red 0…3, red 4…7, green, green, blue, blue, and the last of all three.
+// 2 and, where the volume has it, 4; the cosine has no band 3. Seven texels hold nine coefficients
+// of three channels: red 0…3, red 4…7, green, green, blue, blue, and the last of all three.
 
 //!import andon/harmonics/harmonics.wgsl
 //!import andon/transport/probes/settings.wgsl

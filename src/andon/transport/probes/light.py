@@ -122,11 +122,14 @@ def probe_mix(
     return mix if light.walls is None else hidden_mix(light.walls, mix, points, normals)
 
 
-def probe_illuminance(light: ProbeLight, points: Float, normals: Float, /) -> Float:
+def probe_illuminance(
+    light: ProbeLight, points: Float, normals: Float, /, *, signed: bool = False
+) -> Float:
     """Illuminance (q, 3) in lux at points (q, 3), metres, world, that face normals (q, 3).
 
-    Normals may have any length but 0. Never negative; NaN for a point or a normal that is not
-    finite, and for a normal of 0. Raises `InputError` for arrays that are not (q, 3).
+    Normals may have any length but 0. Never negative, unless `signed`: of light that is the
+    difference of two. NaN for a point or a normal that is not finite, and for a normal of 0.
+    Raises `InputError` for arrays that are not (q, 3).
     """
     points, normals = points_of(points, "points"), points_of(normals, "normals")
     if len(points) != len(normals):
@@ -143,7 +146,7 @@ def probe_illuminance(light: ProbeLight, points: Float, normals: Float, /) -> Fl
         mix = probe_mix(light, points[part], normals[part])
         own = light.space.mixed(mix, lit)
         lux[part] = np.einsum("qkc,qk->qc", own, basis(normals[part], order))
-    return np.maximum(lux, 0)
+    return lux if signed else np.maximum(lux, 0)
 
 
 def probe_coefficients(light: ProbeLight, points: Float, /) -> Float:

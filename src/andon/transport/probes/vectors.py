@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.files.volumes.model import Cells, ProbeVolume, Zone
+from andon.files.volumes.model import Cells, ProbeVolume, Zone, plain_volume
 from andon.harmonics import irradiance
 from andon.transport.probes.cells import build_cells
 from andon.transport.probes.space import ProbeSpace
@@ -75,16 +75,7 @@ def _volume(name: str, positions: Float, given: tuple[Zone, ...]) -> dict[str, A
     light = np.round(random.normal(size=(count, 9, 3)), 3)
     light[:, 0] = np.round(np.abs(light[:, 0]) + 2, 3)
     cells = build_cells(positions, zones)
-    volume = ProbeVolume(
-        positions=positions,
-        capture_positions=positions,
-        names=tuple(f"{name} {number}" for number in range(count)),
-        roles=("general",) * count,
-        ranges_m=np.full(count, np.inf),
-        states={"default": light},
-        zones=zones,
-        cells=cells,
-    )
+    volume = plain_volume(positions, light, zones=zones, cells=cells)
     return {
         "name": name,
         "positions": positions.tolist(),
@@ -108,15 +99,16 @@ def _queries(volume: ProbeVolume, random: np.random.Generator) -> list[dict[str,
     normals = _unit(np.round(_unit(drawn), 6))
     mix = space.locate(points, engine="numpy")
     mixed = space.mixed(mix, light)
+    columns = {
+        "point": points,
+        "inside": mix.cells >= 0,
+        "normal": normals,
+        "coefficients": np.round(mixed, DECIMALS),
+        "irradiance": np.round(irradiance(mixed, normals), DECIMALS),
+    }
     return [
-        {
-            "point": point.tolist(),
-            "inside": bool(cell >= 0),
-            "normal": normal.tolist(),
-            "coefficients": np.asarray(coefficients, np.float64).round(DECIMALS).tolist(),
-            "irradiance": np.round(irradiance(coefficients, normal), DECIMALS).tolist(),
-        }
-        for point, cell, normal, coefficients in zip(points, mix.cells, normals, mixed, strict=True)
+        dict(zip(columns, row, strict=True))
+        for row in zip(*(column.tolist() for column in columns.values()), strict=True)
     ]
 
 

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.files.volumes.model import Distances
 from andon.harmonics import cube_directions, cube_solid_angles
-from andon.transport.probes.octahedra import bilinear_taps, square_of
+from andon.octahedra import bilinear_taps, square_of
 
 __all__ = ["CUT", "LIFT", "SHARPNESS", "distance_map", "visible"]
 

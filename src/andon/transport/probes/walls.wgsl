@@ -1,5 +1,6 @@
 // Walls hide probes: visibility.py and hidden.py.
 
+//!import andon/gpu/octahedral.wgsl
 //!import andon/transport/probes/hull.wgsl
 //!import andon/transport/probes/irradiance.wgsl
 
@@ -13,19 +14,13 @@ const PROBE_LEAST_SPREAD: f32 = 1e-3;
 const PROBE_ENOUGH: f32 = 0.05;
 const PROBE_LEAST: f32 = 1e-5;
 
-fn square_of(direction: vec3f) -> vec2f {
-  let size = abs(direction);
-  let flat = direction.xy / (size.x + size.y + size.z);
-  return select((1.0 - abs(flat.yx)) * sign_not_zero(flat), flat, direction.z >= 0.0);
-}
-
 // How much a point may believe a probe: 0 hidden … 1 seen.
 fn seen(probe: i32, position: vec3f, normal: vec3f) -> f32 {
   var reach = position - datum(PROBE_PLACES + 4 * probe).xyz;
   reach += PROBE_LIFT * length(reach) * normal;
   let distance = length(reach);
   let direction = select(vec3f(0.0, 0.0, 1.0), reach, distance > 0.0);
-  let at = (square_of(direction) + 1.0) * (0.5 * PROBE_SIDE) + 0.5;
+  let at = (octahedral_square(direction) + 1.0) * (0.5 * PROBE_SIDE) + 0.5;
   let first = floor(at);
   let part = at - first;
   let tile = vec2i(probe % PROBE_TILES, probe / PROBE_TILES) * (i32(PROBE_SIDE) + 2);

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from andon.errors import InputError, nearest_name
 from andon.files.volumes.model import Zone
 
-__all__ = ["boxes_of", "chosen_zones", "zone_of"]
+__all__ = ["beyond_box", "boxes_of", "chosen_zones", "zone_of"]
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int32]
@@ -44,17 +44,20 @@ def boxes_of(zones: Sequence[Zone], /) -> tuple[Float, Int]:
     return np.concatenate(boxes).astype(np.float64).reshape(-1, 2, 3), np.concatenate(numbers)
 
 
+def beyond_box(points: Float, box: Float, /) -> Float:
+    """(q,) the square of the distance from points (q, 3) to a box (2, 3); 0 inside."""
+    beyond = np.maximum(np.maximum(box[0] - points, points - box[1]), 0.0)
+    return np.einsum("qi,qi->q", beyond, beyond)
+
+
 def zone_of(points: Float, boxes: Float, box_zones: Int, /) -> Int:
     """(q,) the number of the zone of each point (q, 3); of a point with a NaN, any."""
     best = np.zeros(len(points), np.int32)
     if len(boxes) == 1:
         return best
     least = np.full(len(points), np.inf)
-    for number, (low, high) in enumerate(boxes):
-        # The greatest distance along an axis would do as well inside; outside, the nearest box is
-        # meant in the ordinary sense.
-        beyond = np.maximum(np.maximum(low - points, points - high), 0.0)
-        square = np.einsum("qi,qi->q", beyond, beyond)
+    for number, box in enumerate(boxes):
+        square = beyond_box(points, box)
         nearer = square < least
         least[nearer], best[nearer] = square[nearer], number
     return box_zones[best]

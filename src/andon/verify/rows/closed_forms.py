@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from andon.lamps import DirectionalLamp, Lamp, PointLamp, SpotLamp
 from andon.pipeline import EngineName, Renderer
 from andon.quantities import Geometry
-from andon.spaces import View, look_at
+from andon.spaces import View, look_at, pinhole_view
 from andon.transport.direct import reference
 from andon.verify.setting import prepared_of
 
@@ -83,7 +83,7 @@ def tilted_floor() -> tuple[Geometry, Float]:
 def floor_view(normal: Float, /) -> View:
     """Straight down on the tilted floor's middle, from 3 m."""
     pose = look_at(normal * 3.0, np.zeros(3), (0.0, 0.0, -1.0))
-    return View("pinhole", 320, 240, 200.0, 200.0, 159.5, 119.5, world_from_camera=pose)
+    return pinhole_view(320, 240, 200.0, pose)
 
 
 def floor_error(engine: EngineName) -> float:

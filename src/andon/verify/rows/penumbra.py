@@ -22,7 +22,7 @@ from andon.lamps import AnyAreaLamp, DiskLamp, PolygonLamp, Shadow, SphereLamp
 from andon.lamps.areas import SOFT_SHADOW
 from andon.pipeline import EngineName, Renderer
 from andon.quantities import Geometry
-from andon.spaces import View, look_at
+from andon.spaces import View, look_at, pinhole_view
 from andon.transport.direct import reference
 from andon.verify.registry import Row
 from andon.verify.setting import prepared_of
@@ -65,7 +65,7 @@ def _view(height: float, reach: float) -> View:
     eye = np.array([0.0, 0.8 * height, 0.0])
     pose = look_at(eye, np.zeros(3), (0.0, 0.0, -1.0))
     focal = 0.5 * WIDTH * eye[1] / reach
-    return View("pinhole", WIDTH, 9, focal, focal, (WIDTH - 1) / 2, 4.0, world_from_camera=pose)
+    return pinhole_view(WIDTH, 9, focal, pose)
 
 
 def _width(place: Float, share: Float) -> float:

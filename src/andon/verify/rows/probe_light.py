@@ -16,7 +16,7 @@ from andon.engines.probes import SceneProbes
 from andon.harmonics import irradiance
 from andon.pipeline import EngineName, Renderer
 from andon.quantities import CameraFrame, Geometry, Material
-from andon.spaces import View, look_at
+from andon.spaces import look_at, pinhole_view
 from andon.surface.load import surface_of_mesh
 from andon.surface.model import ObjectInfo
 from andon.surface.objects import joined
@@ -183,8 +183,7 @@ def ball_setting(
     room, light = coloured_room(), _coloured_light()
     focal = 0.8 * width
     pose = look_at(np.array([0.0, 0.1, 1.45]), np.array([0.0, -0.25, -1.0]))
-    centre = ((width - 1) / 2, (height - 1) / 2)
-    view = View("pinhole", width, height, focal, focal, *centre, world_from_camera=pose)
+    view = pinhole_view(width, height, focal, pose)
     unit = 40.0  # cd/m² of white: the brightest wall has 33
     photo = (room.photographed(view) / unit).astype(np.float32)
     balls, infos = _balls()

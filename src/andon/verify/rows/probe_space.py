@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError, MachineError
-from andon.files.volumes.model import Zone
+from andon.files.volumes.model import FACES, Zone
 from andon.transport.probes.cells import build_cells
-from andon.transport.probes.facets import FACES
 from andon.transport.probes.lookup import barycentric
 from andon.transport.probes.space import ProbeSpace
 from andon.verify.probe_sets import degenerate_sets, full_sets, uniform, volume_of

@@ -8,6 +8,9 @@
 // normals of the three planes through the lamp and an edge.
 @group(1) @binding(4) var<storage, read> occluders: array<vec4f>;
 
+// Triangles are asked at the receiver's own place: no texel lies between it and them.
+const PARABOLOID_LIFT_TEXELS: f32 = 0.0;
+
 // Directions this close to an edge, in rad, are inside both its triangles: no light leaks through.
 const EDGE: f32 = 1e-6;
 

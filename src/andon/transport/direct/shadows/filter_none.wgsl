@@ -1,5 +1,8 @@
 // Hard shadows: the texel that the receiver falls into decides.
 
+// See `Receiver`.
+const PARABOLOID_LIFT_TEXELS: f32 = 1.0;
+
 fn nearest_texel(place: vec2f) -> vec2i {
   return clamp(vec2i(place), vec2i(0), vec2i(i32(MAP_SIZE) - 1));
 }

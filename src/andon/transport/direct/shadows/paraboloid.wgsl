@@ -12,3 +12,9 @@
 fn paraboloid_direction(u: vec2f, side: f32) -> vec3f {
   return vec3f(2.0 * u, side * (1.0 - dot(u, u)));
 }
+
+// Metres across the widest texels of a disc at a distance: those in the middle of the six faces that
+// discs are filled from, which are size/2 texels wide.
+fn paraboloid_texel_m(distance: f32, size: f32) -> f32 {
+  return distance * (4.0 / size);
+}

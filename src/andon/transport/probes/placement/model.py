@@ -69,7 +69,7 @@ class Placed:
 
     Attributes
     ----------
-    positions : (n, 3) where they count, metres, world.
+    positions : (n, 3) where they count, metres, world; as float32 holds them, as do files.
     capture_positions : (n, 3) where they are captured, metres, world.
     names : n, unique.
     roles : n.

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.volumes.model import ProbeRole
+from andon.files.volumes.rounded import in_single
 from andon.quantities import Geometry
 from andon.scene import Scene
 from andon.scene.probes import ProbePlace, Probes
@@ -26,6 +27,7 @@ from andon.transport.probes.placement.model import Panorama, Placed, Tally
 from andon.transport.probes.placement.nodes import from_nodes
 from andon.transport.probes.placement.spread import Spread, spread
 from andon.transport.probes.placement.walls import Walls, winding_faults
+from andon.transport.probes.placement.written import nearest_distances_m
 
 __all__ = ["place_probes"]
 
@@ -65,8 +67,8 @@ def place_probes(scene: Scene, geometry: Geometry, /) -> Placed:
     Raises
     ------
     InputError
-        where there is no [probes], no probe comes out, a file is at fault, or the kind of
-        placement is not built yet.
+        where there is no [probes], no probe comes out, a file is at fault, the kind of placement
+        is not built yet, or float32 does not tell the probes apart.
     """
     probes = _table(scene)
     walls = Walls(geometry)
@@ -78,6 +80,8 @@ def place_probes(scene: Scene, geometry: Geometry, /) -> Placed:
         raise _nothing(scene, probes, made.tally)
     if len(entries) > MAX_PROBES:
         raise InputError(f"more than {MAX_PROBES} probes", file=scene.file, field="probes")
+    _check_precision(entries, scene.file)
+    entries = [_in_file(entry) for entry in entries]
     kept = _apart(entries)
     left_out = [entries[index] for index in sorted(set(range(len(entries))) - set(kept))]
     entries = _uniquely_named(entries[index] for index in kept)
@@ -185,6 +189,34 @@ def _apart(entries: list[_Entry]) -> list[int]:
     """Numbers of the entries that do not lie where one before them does."""
     points = np.array([entry.position for entry in entries])
     return spread(points, Spread(SAME_PLACE_M), most=len(points))[0].tolist()
+
+
+def _in_file(entry: _Entry) -> _Entry:
+    """The entry where a volume's file will have it: what is captured and joined is what is read."""
+    return replace(
+        entry,
+        position=in_single(entry.position),
+        capture_position=in_single(entry.capture_position),
+    )
+
+
+def _check_precision(entries: list[_Entry], file: str) -> None:
+    """Refuses probes that are nearer to each other than float32 tells places apart there."""
+    points = np.array([entry.position for entry in entries])
+    farthest = float(np.abs(points).max())
+    precision = float(np.spacing(np.float32(farthest)))
+    if precision <= SAME_PLACE_M:
+        return
+    points = points[_apart(entries)]
+    nearest = float(nearest_distances_m(points).min()) if len(points) > 1 else np.inf
+    if nearest < precision:
+        raise InputError(
+            f"too far from the origin for float32: places of {farthest:.3g} m are {precision:.2g} "
+            f"m apart there, and probes {nearest:.2g} m",
+            file=file,
+            field="probes",
+            remedy="move the scene to the origin",
+        )
 
 
 def _uniquely_named(entries: Iterable[_Entry]) -> list[_Entry]:

@@ -7,7 +7,9 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.volumes.model import Zone
+from andon.files.volumes.rounded import in_single
 from andon.scene import Scene
+from andon.transport.probes.zones import beyond_box
 
 __all__ = ["zones_of"]
 
@@ -29,8 +31,8 @@ def zones_of(scene: Scene, positions: Float, /) -> tuple[Zone, ...]:
     names = tuple(dict.fromkeys(table.name for table in tables))
     numbers = np.array([names.index(table.name) for table in tables])
     boxes = np.array([(table.low, table.high) for table in tables])
-    beyond = np.maximum(boxes[:, 0] - positions[:, None], positions[:, None] - boxes[:, 1])
-    away = np.linalg.norm(np.maximum(beyond, 0), axis=2)  # (n, b)
+    # Probes lie where float32 has them: one on the side of a box is judged by that side's float32.
+    away = np.stack([beyond_box(positions, in_single(box)) for box in boxes], axis=1)
     belongs = away <= away.min(axis=1, keepdims=True)
     found: list[Zone] = []
     for number, name in enumerate(names):

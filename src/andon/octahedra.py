@@ -26,17 +26,20 @@ def square_of(directions: Float, /) -> Float:
     """(..., 2) in [−1, 1]² of directions (..., 3), of any length but 0."""
     size = np.abs(directions).sum(axis=-1, keepdims=True)
     flat = directions[..., :2] / size
-    folded = (1 - np.abs(flat[..., ::-1])) * np.where(flat >= 0, 1.0, -1.0)
-    return np.asarray(np.where(directions[..., 2:] >= 0, flat, folded), np.float64)
+    return np.asarray(np.where(directions[..., 2:] >= 0, flat, _folded(flat)), np.float64)
 
 
 def directions_of(places: Float, /) -> Float:
     """Unit directions (..., 3) of places (..., 2) in [−1, 1]²."""
     z = 1 - np.abs(places).sum(axis=-1, keepdims=True)
-    folded = (1 - np.abs(places[..., ::-1])) * np.where(places >= 0, 1.0, -1.0)
-    direction = np.concatenate([np.where(z >= 0, places, folded), z], axis=-1)
+    direction = np.concatenate([np.where(z >= 0, places, _folded(places)), z], axis=-1)
     length: Float = np.linalg.norm(direction, axis=-1, keepdims=True)
     return direction / length
+
+
+def _folded(places: Float) -> Float:
+    """What lies inside goes out into the corners, and back."""
+    return (1 - np.abs(places[..., ::-1])) * np.where(places >= 0, 1.0, -1.0)
 
 
 def bilinear_taps(directions: Float, side: int, /) -> tuple[NDArray[np.int64], Float]:

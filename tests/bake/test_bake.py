@@ -183,6 +183,17 @@ def test_geometry_that_is_no_manifold_is_captured(tmp_path):
     assert (light_of(result.volume)[:, 0] > 0).all()
 
 
+def test_a_white_that_frames_will_need_is_told(tmp_path):
+    """A lamp in a room does not say it; a sun, E0 or a stated white do."""
+    assert baked(lamp_room(tmp_path)).report.needs_white
+    sun = {"kind": "directional", "direction": [0, -1, 0], "illuminance_lux": 1.0}
+    for tables in (
+        {"lamp": [sun]}, {"ambient": {"illuminance_lux": 1.0}},
+        {"capture": {"luminance_per_unit": 9.0}},
+    ):  # fmt: skip
+        assert not baked(lamp_room(tmp_path, **tables)).report.needs_white
+
+
 def test_light_that_is_to_be_found_cannot_be_baked_from(tmp_path):
     loaded = scene(tmp_path, ambient={"probes": True}, probes={
         "volume": "p.glb", "place": [{"position": [0, 0, 0]}],

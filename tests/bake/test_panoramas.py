@@ -99,3 +99,13 @@ def test_it_knows_the_walls_of_the_scene(tmp_path, engine):
     first, second = next(iter(volume.states.values()))
     np.testing.assert_allclose(first[0], np.sqrt(4 * np.pi), rtol=1e-5)
     assert second[0, 0] > 1
+
+
+def test_panoramas_of_unknown_scale_are_named_once(tmp_path):
+    stated = panorama(tmp_path, grey(1.0), luminance_per_unit=1.0)
+    assert light(stated)[1].unscaled == ()
+    write_png(tmp_path / "b.png", np.full((HEIGHT, 2 * HEIGHT, 3), 99, np.uint8))
+    names = ("sky.exr", "b.png", "sky.exr")
+    places = [{"position": [i, 0, 0], "panorama": name} for i, name in enumerate(names)]
+    loaded = scene_of(tmp_path, probes={"place": places, "placement": {"kind": "hand"}})
+    assert light(loaded)[1].unscaled == ("sky.exr", "b.png")

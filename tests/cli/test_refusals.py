@@ -427,7 +427,8 @@ def test_a_lamp_with_a_baked_transport(refused_scene):
     ("words", "message"),
     [
         (["relihgt"], "No such command 'relihgt'"),
-        (["relight"], "photo"),
+        (["relight"], "out"),
+        (["relight", "-o", "o.png"], "PHOTO: is missing: there is no picture to relight"),
         (["relight", "photo.png"], "out"),
         (["relight", "photo.png", "-o", "o.png", "--dpth", "x"], "No such option"),
         (["relight", "photo.png", "-o", "o.png", "--ambient-lux", "bright"], "number"),

@@ -60,7 +60,7 @@ def test_the_other_eye_keeps_its_own_picture(folder):
 
     scene, photo = folder / "rig" / "stereo.toml", folder / "right.png"
     for typed in (photo, photo.relative_to(folder)):
-        options = RelightOptions(typed, folder / "out.png", scene=scene, view="left")
+        options = RelightOptions(folder / "out.png", typed, scene=scene, view="left")
         frames = Renderer(scene_of(options), "reference").prepared.frames
         codes = {name: float(frame.linear[20, 20, 0]) for name, frame in frames.items()}
         assert codes["left"] > 2 * codes["right"], codes

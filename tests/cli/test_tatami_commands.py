@@ -23,7 +23,7 @@ def test_commands_name_scenes_and_lamps_that_are_there(monkeypatch, tmp_path, co
     options = dict(zip(words[::2], words[1::2], strict=True))
     lamps = [options["--lamp"]] if "--lamp" in options else None
     typed = RelightOptions(
-        Path(photo), Path(options["-o"]), scene=Path(options["--scene"]), lamps=lamps
+        Path(options["-o"]), Path(photo), scene=Path(options["--scene"]), lamps=lamps
     )
     scene = scene_of(typed)
     assert scene.path(scene.capture.source, "capture.source") == Path("photo.png")
@@ -42,7 +42,7 @@ def test_meshes_that_are_shells_and_one_that_is_none(monkeypatch, name):
     monkeypatch.chdir(ROOM)
     lamp = f"kind=point,position=0,0.5,0,flux_lm=9,shell.mesh={name}.obj"
     options = RelightOptions(
-        Path("photo.png"), Path("out.png"), scene=Path("figure3.toml"), lamps=[lamp]
+        Path("out.png"), Path("photo.png"), scene=Path("figure3.toml"), lamps=[lamp]
     )
     scene = scene_of(options)
     if name == "chochin":

@@ -29,6 +29,14 @@ from __future__ import annotations
 from andon.bake.bake import Baked, bake_probes
 from andon.bake.report import BakeReport
 from andon.bake.runner import Progress
-from andon.bake.to_file import Written, bake_file
+from andon.bake.to_file import Written, bake_file, placed_in
 
-__all__ = ["BakeReport", "Baked", "Progress", "Written", "bake_file", "bake_probes"]
+__all__ = [
+    "BakeReport",
+    "Baked",
+    "Progress",
+    "Written",
+    "bake_file",
+    "bake_probes",
+    "placed_in",
+]

@@ -36,14 +36,20 @@ Float = NDArray[np.float64]
 
 DEFAULT_STATE = "default"
 # Of what journals hold: results of another version of this package are computed again.
-VERSION = 1
+VERSION = 2
 # Pixels along a face of the pictures of a bounce, at most.
 BOUNCE_SIZE = 32
 
 
 @dataclass(frozen=True, eq=False)
 class Baked:
-    """A volume of one state, and what is to be said of it."""
+    """What a bake gives.
+
+    Attributes
+    ----------
+    volume : of one state.
+    report : what is to be said of it.
+    """
 
     volume: ProbeVolume
     report: BakeReport
@@ -163,7 +169,7 @@ class _Bake:
             (VERSION, settings, self.look.engine.name, self.look.engine.adapter, self.far_m),
             (setting.geometry, casters.groups, setting.prepared.surface.bias),
             (setting.lamps, setting.moment.bodies, lighting.ambient_lux, lighting.sky),
-            photograph,
+            (photograph, lighting.surroundings_cd_m2),
         )
 
     def _first_key(self, index: int) -> str:
@@ -290,10 +296,26 @@ class _Bake:
             clipped=tuple(names[index] for index in np.flatnonzero(shares > 0).tolist()),
             clipped_share=float(shares.max(initial=0.0)),
             negative=int(sum(float(result["negative"]) for result in first)),
-            unphotographed_share=float(
-                np.mean([float(result["unphotographed"]) for result in first])
-            ),
+            unphotographed_share=self._mean(first, "unphotographed"),
+            surroundings_share=self._mean(first, "surroundings"),
+            unscaled=_unscaled(self.probes),
+            needs_white=self._needs_white(),
         )
+
+    def _mean(self, first: Sequence[Result], key: str) -> float:
+        """Over the probes that are no panoramas."""
+        shares = [float(first[index][key]) for index in self.own]
+        return float(np.mean(shares)) if shares else 0.0
+
+    def _needs_white(self) -> bool:
+        """Frames of this scene cannot be drawn until it states its white."""
+        if self.setting is None or self.scene.has_photograph:
+            return False
+        try:
+            self._white()
+        except InputError:
+            return True
+        return False
 
     def _in_walls(self) -> tuple[str, ...]:
         """Probes that mostly see backs of surfaces; panoramas see none."""
@@ -309,6 +331,12 @@ def _table(scene: Scene) -> Probes:
     if scene.probes is None:
         raise InputError("needs a [probes] table", file=scene.file, remedy="add probes.volume")
     return scene.probes
+
+
+def _unscaled(probes: Probes) -> tuple[str, ...]:
+    """Panoramas of which nobody says how bright their 1 is."""
+    own = [p for p in probes.place if p.panorama and "luminance_per_unit" not in p.model_fields_set]
+    return tuple(dict.fromkeys(str(place.panorama) for place in own))
 
 
 def _passes(setting: CubeSetting | None, bounces: int) -> range:

@@ -72,7 +72,9 @@ class Pictures:
 def first_light(pictures: Pictures, index: int, /) -> Result:
     """The light of a probe before bounces, part by part, and how far it sees."""
     panorama = pictures.placed.panoramas[index]
-    counts = {"not_finite": 0.0, "clipped_share": 0.0, "negative": 0.0, "unphotographed": 0.0}
+    counts = dict.fromkeys(
+        ("not_finite", "clipped_share", "negative", "unphotographed", "surroundings"), 0.0
+    )
     distance: Float = np.full((6, 8, 8), np.inf)
     if panorama is not None:
         light = panorama_light(pictures.scene, panorama, pictures.order)
@@ -93,6 +95,7 @@ def first_light(pictures: Pictures, index: int, /) -> Result:
         counts |= {
             "not_finite": float(capture.not_finite),
             "unphotographed": capture.unphotographed_share,
+            "surroundings": capture.surroundings_share,
         }
     mean, square = distance_map(distance, far_m=pictures.far_m)
     found: dict[str, NDArray[Any]] = dict(zip(PARTS, parts, strict=True))

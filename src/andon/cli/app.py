@@ -40,7 +40,7 @@ def _root(
 @app.command()
 @takes(RelightOptions)
 def relight(**typed: Any) -> None:
-    """Relight a photograph with virtual lamps.
+    """Relight a photograph with virtual lamps, or draw a scene that has none.
 
     Without a pose in the camera file, the camera stands at the origin and looks along −Z, +Y is
     up: `position=0,0.5,-2` is two metres ahead and half a metre up.
@@ -54,6 +54,8 @@ def relight(**typed: Any) -> None:
             --lamp kind=point,position=0.5,0.3,-1.5,flux_lm=800,temperature_k=2700 -o lit.png
 
         andon relight room.png --scene night.toml -o lit.png --illuminance-map lux.exr
+
+        andon relight --scene examples/basic/walk.toml --time 3 -o walk.png
     """
     from andon.cli.relight import run
 

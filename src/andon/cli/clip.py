@@ -12,11 +12,13 @@ import numpy as np
 
 from andon.cli.console import Interrupted, note
 from andon.cli.relight import check_view
+from andon.cli.without_photograph import refuse_photograph, white_text
 from andon.errors import InputError, MachineError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from andon.engines.prepared import Prepared
     from andon.pipeline import Renderer
     from andon.scene import Scene
     from andon.scene.camera import Camera
@@ -53,7 +55,7 @@ def run(options: ClipOptions) -> None:
 
     scene = _scaled(load_scene(options.scene), options.scale)
     check_view(scene, options.view)
-    _refuse_overwriting(options.out, scene)
+    refuse_photograph(options.out, scene)
     rate = options.frames_per_second
     rate = scene.scene.frames_per_second if rate is None else rate
     times = _times(options, scene, rate)
@@ -66,13 +68,22 @@ def run(options: ClipOptions) -> None:
         _write_folder(options, renderer, times)
     else:
         _write_file(options, renderer, times, rate)
-    if options.end_seconds is None and scene.scene.duration_seconds == 0:
-        note("the scene has no scene.duration_seconds: it is a still, of one frame")
-    for line in renderer.prepared.surface.notes:
+    for line in _notes(options, scene, renderer.prepared):
         note(line)
-    if renderer.prepared.ignored:
-        note(f"not drawn: {', '.join(renderer.prepared.ignored)} (later versions)")
     print(options.out)
+
+
+def _notes(options: ClipOptions, scene: Scene, prepared: Prepared) -> list[str]:
+    notes: list[str] = []
+    if options.end_seconds is None and scene.scene.duration_seconds == 0:
+        notes.append("the scene has no scene.duration_seconds: it is a still, of one frame")
+    white = white_text(scene, prepared)
+    if white is not None:
+        notes.append(f"white is {white}")
+    notes += prepared.surface.notes
+    if prepared.ignored:
+        notes.append(f"not drawn: {', '.join(prepared.ignored)} (later versions)")
+    return notes
 
 
 def _scaled(scene: Scene, scale: float) -> Scene:
@@ -142,23 +153,6 @@ def _check_out(out: Path) -> bool:
             remedy="name a new one, or empty it",
         )
     return True
-
-
-def _refuse_overwriting(out: Path, scene: Scene) -> None:
-    from andon.engines.reading import source_of
-
-    names = [name for name, _ in scene.rig.cameras] if scene.rig is not None else []
-    if (
-        scene.capture is not None
-        and scene.capture.source is not None
-        and any(Path(source_of(scene, name)[0]).resolve() == out.resolve() for name in names)
-    ):
-        raise InputError(
-            "is also the scene's photograph, and would be overwritten",
-            file=out,
-            field="--out",
-            remedy="give it another name",
-        )
 
 
 def _times(options: ClipOptions, scene: Scene, rate: float) -> list[float]:

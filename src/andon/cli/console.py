@@ -47,9 +47,16 @@ def check_writable(path: Path, suffixes: tuple[str, ...], field: str) -> None:
 
 
 def print_report(
-    report: Report, setup_seconds: Mapping[str, float], pixels: int, depth: str | None = None
+    report: Report,
+    setup_seconds: Mapping[str, float],
+    pixels: int,
+    depth: str | None = None,
+    white: str | None = None,
 ) -> None:
-    """Engine, stage times, depths, holes and shadow geometry of a frame."""
+    """Engine, stage times, depths, holes and shadow geometry of a frame.
+
+    `white` says what is white on the screen where no photograph does: then there is none.
+    """
     from rich.console import Console
     from rich.table import Table
 
@@ -58,18 +65,32 @@ def print_report(
     seconds: dict[str, Any] = {**setup_seconds, **report.stage_seconds}
     table.add_row("stages", " · ".join(f"{k} {v * 1e3:.0f} ms" for k, v in seconds.items()))
     table.add_row("photometry", report.photometry)
+    if white is not None:
+        table.add_row("white", white)
     if depth is not None:  # the unit of a depth is mistaken more often than all else
         table.add_row("depth", depth)
-    table.add_row("holes", f"{report.hole_pixels / pixels:.1%} of the pixels get no added light")
-    table.add_row("clipped", f"{report.clipped_pixels / pixels:.1%} of the photograph is clipped")
-    if report.occluder_triangles:
-        table.add_row(
-            "shadows",
-            f"{report.occluder_triangles} of {report.occluder_triangles_before} triangles, "
-            f"95 % within {report.occluder_error_m * 1e3:.1f} mm, "
-            f"{report.occluder_lost_share:.1%} lost; "
-            f"lift {report.shadow_bias_m * 1e3:.1f} mm",
-        )
+    for row in _rows_of_picture(report, pixels, has_photograph=white is None):
+        table.add_row(*row)
     if report.ignored_tables:
         table.add_row("not drawn", f"{', '.join(report.ignored_tables)} (later versions)")
     Console(stderr=True).print(table)
+
+
+def _rows_of_picture(report: Report, pixels: int, *, has_photograph: bool) -> list[tuple[str, str]]:
+    holes, triangles = f"{report.hole_pixels / pixels:.1%} of the pixels", report.occluder_triangles
+    if not has_photograph:
+        rows = [("background", f"{holes} show no surface")]
+        return [*rows, ("shadows", f"{triangles} triangles, all there are")] if triangles else rows
+    rows = [
+        ("holes", f"{holes} get no added light"),
+        ("clipped", f"{report.clipped_pixels / pixels:.1%} of the photograph is clipped"),
+    ]
+    if not triangles:
+        return rows
+    shadows = (
+        f"{triangles} of {report.occluder_triangles_before} triangles, "
+        f"95 % within {report.occluder_error_m * 1e3:.1f} mm, "
+        f"{report.occluder_lost_share:.1%} lost; "
+        f"lift {report.shadow_bias_m * 1e3:.1f} mm"
+    )
+    return [*rows, ("shadows", shadows)]

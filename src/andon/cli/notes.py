@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from andon.cli.body_notes import notes_on_bodies
 from andon.engines.prepared import Prepared
@@ -13,6 +14,7 @@ from andon.lamps import Lamp, SpotLamp
 from andon.pipeline import Frame
 from andon.quantities import Surface
 from andon.surface.model import SurfaceModel
+from andon.surface.virtual import SURFACE
 
 __all__ = ["depth_text", "notes_on", "notes_on_time"]
 
@@ -26,13 +28,15 @@ SPARSE = 7
 LIGHT_UNITS = ("_cd", "_lux", "_cd_m2")
 
 
-def notes_on(frame: Frame, prepared: Prepared, time_seconds: float) -> list[str]:
+def notes_on(
+    frame: Frame, prepared: Prepared, time_seconds: float, *, has_photograph: bool = True
+) -> list[str]:
     """One line each: what was found, and what can be done about it."""
     surface, model = frame.surface, prepared.surface
     return [
         *model.notes,
-        *_on_depth(surface),
-        *_on_objects(surface, prepared, time_seconds),
+        *_on_depth(surface, has_photograph),
+        *_on_objects(surface, prepared, time_seconds, has_photograph),
         *_on_lamps(surface, prepared, time_seconds),
         *notes_on_bodies(surface, prepared.bodies(time_seconds), prepared.lamps(time_seconds)),
         *_on_lift(model),
@@ -50,10 +54,12 @@ def notes_on_time(time_seconds: float, duration_seconds: float) -> list[str]:
     ]
 
 
-def depth_text(surface: Surface) -> str | None:
-    """Range and median of the real surface; None where it has no depth."""
-    depth = surface.depth[surface.valid & ~surface.is_object]
-    depth = depth[np.isfinite(depth)]
+def depth_text(surface: Surface, *, has_photograph: bool = True) -> str | None:
+    """Range and median of the real surface, or without a photograph of all that is drawn.
+
+    None where there is no depth.
+    """
+    depth = _depths(surface, has_photograph)
     if not len(depth):
         return None
     low, middle, high = (_metres(float(value)) for value in np.percentile(depth, [0, 50, 100]))
@@ -65,20 +71,31 @@ def _metres(value: float) -> str:
     return f"{value:.0f}" if value >= 100 else f"{value:.2f}" if value >= 0.1 else f"{value:.2g}"
 
 
-def _on_depth(surface: Surface) -> list[str]:
-    depth = surface.depth[surface.valid & ~surface.is_object]
+def _depths(surface: Surface, has_photograph: bool) -> NDArray[np.float64]:
+    depth = surface.depth[surface.valid & ~(surface.is_object & has_photograph)]
+    return depth[np.isfinite(depth)]
+
+
+def _on_depth(surface: Surface, has_photograph: bool) -> list[str]:
+    depth = _depths(surface, has_photograph)
     middle = float(np.median(depth)) if len(depth) else float("nan")
     low, high = LIKELY_DEPTHS_M
     if not middle < low and not middle > high:  # NaN: normals alone
         return []
+    if not has_photograph:
+        return [
+            f"the median depth is {_metres(middle)} m: check the unit of the meshes, and the camera"
+        ]
     return [
         f"the median depth is {_metres(middle)} m: check the unit of the depth or mesh "
         "(depth in millimetres: --depth-scale-to-m 0.001 or scale_to_m = 0.001)"
     ]
 
 
-def _on_objects(surface: Surface, prepared: Prepared, time_seconds: float) -> list[str]:
-    """Objects without a pixel."""
+def _on_objects(
+    surface: Surface, prepared: Prepared, time_seconds: float, has_photograph: bool
+) -> list[str]:
+    """Objects without a pixel; without a photograph, the mesh of the surface is the first."""
     model, movers = prepared.surface, prepared.at(time_seconds).movers
     own = surface.is_object
     if surface.body_id is not None:
@@ -88,9 +105,10 @@ def _on_objects(surface: Surface, prepared: Prepared, time_seconds: float) -> li
     for index, info in enumerate(model.objects_table):
         if index not in seen:
             where = _where(model.corners_of(index, movers).reshape(-1, 3), surface)
-            notes.append(
-                f"the object {info.name!r} covers no pixel: {where}; check position and scale"
-            )
+            mesh = not has_photograph and index == 0 and info.name == SURFACE
+            what = "the mesh of [surface]" if mesh else f"the object {info.name!r}"
+            check = "the camera and the mesh's unit" if mesh else "position and scale"
+            notes.append(f"{what} covers no pixel: {where}; check {check}")
     return notes
 
 
@@ -111,9 +129,12 @@ def _where(points: Any, surface: Surface) -> str:
 
 
 def _on_lamps(surface: Surface, prepared: Prepared, time_seconds: float) -> list[str]:
-    """Lamps that add nothing to any pixel; those of E0 only change what is there."""
-    moment = prepared.at(time_seconds)
+    """Lamps that add nothing to any pixel; those of E0 only change what is there, and those that
+    probes have captured light what is lit by probes."""
+    moment, probes = prepared.at(time_seconds), prepared.probes
+    indirect: frozenset[str] = frozenset() if probes is None else probes.captured
     lamps = [lamp for lamp in moment.lamps if lamp.owner not in prepared.sources]
+    lamps = [lamp for lamp in lamps if lamp.name not in indirect]
     if not lamps or not surface.valid.any():
         return []
     from andon.engines.reference import ReferenceEngine

@@ -50,8 +50,14 @@ EngineOption = Annotated[
 class RelightOptions:
     """The options of the command, as typed; each field is one of them."""
 
-    photo: Annotated[Path, typer.Argument(help="PNG, JPEG, EXR or Radiance HDR.")]
     out: Annotated[Path, typer.Option("-o", "--out", help="PNG or JPEG; EXR: cd/m².")]
+    photo: Annotated[
+        Path | None,
+        typer.Argument(
+            help="PNG, JPEG, EXR or Radiance HDR. With --scene it may be left out: the scene names "
+            "its picture, or has none."
+        ),
+    ] = None
     depth: Annotated[
         Path | None, typer.Option(help="Depth or disparity: NPY, NPZ, PFM, PNG, PGM, EXR.")
     ] = None

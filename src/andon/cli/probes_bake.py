@@ -12,7 +12,7 @@ from andon.cli.options import EngineOption
 from andon.errors import InputError
 
 if TYPE_CHECKING:
-    from andon.bake import Written
+    from andon.bake import BakeReport, Written
     from andon.scene import Scene
 
 __all__ = ["bake"]
@@ -134,6 +134,28 @@ def _notes(written: Written) -> list[str]:
         notes.append(
             f"{report.unphotographed_share:.1%} of the photographed surface that probes see is in "
             "no photograph, and has the mean of what is"
+        )
+    if report.surroundings_share > 0:
+        notes.append(
+            f"{report.surroundings_share:.0%} of what the probes see is not in the photograph: "
+            "taken as E0/π"
+        )
+    return [*notes, *_unstated(report)]
+
+
+def _unstated(report: BakeReport) -> list[str]:
+    """What the scene does not say, and somebody will ask."""
+    notes: list[str] = []
+    if report.unscaled:
+        one = len(report.unscaled) == 1
+        notes.append(
+            f"cd/m² of panorama{'' if one else 's'} {_listed(report.unscaled)} taken as 1 per "
+            "unit: state luminance_per_unit"
+        )
+    if report.needs_white:
+        notes.append(
+            "frames of this scene will need capture.luminance_per_unit: no distant lamp and no "
+            "[ambient] says how bright white is"
         )
     return notes
 

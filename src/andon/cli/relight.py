@@ -10,6 +10,7 @@ import numpy as np
 from andon.cli.console import check_writable, note, print_report
 from andon.cli.options import RelightOptions
 from andon.cli.typed import ASSUMED_AMBIENT_LUX, named_as_typed, scene_of
+from andon.cli.without_photograph import refuse_photograph, white_text
 from andon.errors import InputError
 from andon.quantities import Illuminance, photometric
 
@@ -29,6 +30,8 @@ def run(options: RelightOptions) -> None:
 
     scene = scene_of(options)
     check_view(scene, options.view)
+    for path in (options.out, *(options.illuminance_maps or ())):
+        refuse_photograph(path, scene)
     with named_as_typed(options, len(scene.lamp) - len(options.lamps or ()), scene.file):
         renderer = Renderer(scene, options.engine)  # type: ignore[arg-type]
         frame = renderer.render(options.time_seconds, options.view)
@@ -41,10 +44,16 @@ def run(options: RelightOptions) -> None:
     for path in options.illuminance_maps or ():
         write_illuminance(path, frame.illuminance, frame.surface.valid)
     lines = notes_on_time(options.time_seconds, scene.scene.duration_seconds)
-    for line in (*lines, *notes_on(frame, renderer.prepared, options.time_seconds)):
+    about = notes_on(
+        frame, renderer.prepared, options.time_seconds, has_photograph=scene.has_photograph
+    )
+    for line in (*lines, *about):
         note(line)
-    pixels, depth = frame.surface.valid.size, depth_text(frame.surface)
-    print_report(frame.report, renderer.setup_seconds, pixels, depth)
+    depth = depth_text(frame.surface, has_photograph=scene.has_photograph)
+    white = white_text(scene, renderer.prepared)
+    print_report(
+        frame.report, renderer.setup_seconds, frame.surface.valid.size, depth=depth, white=white
+    )
     print(options.out)
 
 

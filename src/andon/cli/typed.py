@@ -31,6 +31,12 @@ def scene_of(options: RelightOptions) -> Any:
 
     tables: dict[str, Any] = {}
     folder, file = Path(), "command line"
+    if options.scene is None and options.photo is None:
+        raise InputError(
+            "is missing: there is no picture to relight",
+            field="PHOTO",
+            remedy="name one, or with --scene a scene file that names one or needs none",
+        )
     if options.scene is not None:
         loaded = load_scene(options.scene)
         tables = loaded.model_dump(exclude_unset=True)
@@ -140,6 +146,14 @@ def _override(tables: dict[str, Any], options: RelightOptions) -> None:
 
 def _photograph(tables: dict[str, Any], options: RelightOptions) -> None:
     """The photograph that was typed: of the only camera, or of the eye that --view names."""
+    if options.photo is None:  # as the scene says
+        if options.depth is not None and not tables.get("capture", {}).get("source"):
+            raise InputError(
+                "belongs to a photograph, and the scene names none",
+                field="--depth",
+                remedy="name the photograph before the options, or give --mesh",
+            )
+        return
     capture = tables.setdefault("capture", {})
     source, photo = capture.get("source"), _absolute(options.photo)
     if tables.get("rig", {}).get("kind") != "stereo":

@@ -6,11 +6,13 @@
 
 Bodies of lamps are not seen (they light things directly), but they cast their shadows. Sky and
 hemisphere lamps light no surface here: a surface is lit by as much of the sky as the probes of an
-earlier bounce saw, so that rooms have no sky in them.
+earlier bounce saw, so that rooms have no sky in them. What a photograph does not show lights no
+surface either: surfaces have E0 already.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -140,28 +142,35 @@ def cube_setting(scene: Scene, prepared: Prepared, /) -> CubeSetting:
     moment = prepared.at(0.0)
     left_out = {table.name for table in scene.lamp if not table.in_probes}
     lamps = [lamp for lamp in moment.lamps if (lamp.owner or lamp.name) not in left_out]
-    sky = tuple(lamp for lamp in lamps if isinstance(lamp, SkyLamp | HemisphereLamp))
-    real = model.real
-    photograph = None
-    if prepared.frames and len(real.triangles) and not _states_reflectance(real):
-        photograph = _photograph(prepared)
-    ambient = prepared.ambient
-    lux: Float = np.asarray(ambient.dimming) * ambient.mean_lux
-    if scene.ambient is None:  # then what stands for E0 is no light
-        lux = np.zeros(3)
+    lighting = _lighting(scene, prepared, lamps)
     # A material whose light the photograph shows emits nothing beside it.
-    seen = model if photograph is None else replace(model, real=_without_materials(real))
+    real = model.real if lighting.photograph is None else _without_materials(model.real)
+    seen = replace(model, real=real)
     materials = [m for part in (seen.real, seen.objects) for m in part.materials]
-    emits = bool(sky) or any(any(material.emissive_cd_m2) for material in materials)
     return CubeSetting(
         seen,
         moment,
         tuple(lamp for lamp in lamps if not isinstance(lamp, SkyLamp | HemisphereLamp)),
-        Lighting(lux, photograph, sky),
+        lighting,
         prepared,
-        emits,
+        bool(lighting.sky) or any(any(material.emissive_cd_m2) for material in materials),
         any(_is_negative(lamp) for lamp in lamps),
     )
+
+
+def _lighting(scene: Scene, prepared: Prepared, lamps: Sequence[Lamp]) -> Lighting:
+    """All light but that of `lamps` that stand somewhere or are directional."""
+    real, ambient = prepared.surface.real, prepared.ambient
+    photograph = None
+    if prepared.frames and len(real.triangles) and not _states_reflectance(real):
+        photograph = _photograph(prepared)
+    lux: Float = np.asarray(ambient.dimming) * ambient.mean_lux
+    if scene.ambient is None:  # then what stands for E0 is no light
+        lux = np.zeros(3)
+    has_sky = any(table.kind in ("sky", "hemisphere") for table in scene.lamp)
+    sky = tuple(lamp for lamp in lamps if isinstance(lamp, SkyLamp | HemisphereLamp))
+    around = lux / np.pi if scene.has_photograph and not has_sky else None
+    return Lighting(lux, photograph, sky, around)
 
 
 def _is_negative(lamp: Lamp) -> bool:

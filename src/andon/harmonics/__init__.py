@@ -29,9 +29,10 @@ spherical Gaussians  by lobes  by lobes              fits of free lobes cannot b
 (Errors: means over the panoramas of ``andon verify probes.sh.l2`` and ``probes.sh.l4``.)
 
 Settled
-    Order L00, L1−1, L10, L11, L2−2, …; band 1 is +y, +z, +x: no Condon–Shortley sign. The roots
-    are exact. Coefficients hold luminance; illuminance is made last (`convolved`), and π is divided
-    out nowhere. Conversions for three.js, glTF, Unity and Filament are in `conventions`.
+    Public, as `andon.harmonics`. Coefficients are (..., k, 3), leading axes are free; order L00,
+    L1−1, L10, L11, L2−2, …; band 1 is +y, +z, +x: no Condon–Shortley sign. The roots are exact.
+    Coefficients hold luminance; illuminance is made last (`convolved`), and π is divided out
+    nowhere. Conversions for three.js, glTF, Unity and Filament are in `conventions`.
 
 Sources: Ramamoorthi & Hanrahan 2001; Sloan 2008; Sloan 2017.
 """

@@ -54,7 +54,8 @@ class ProbePlace(Table):
     )
     luminance_per_unit: Positive = Field(
         default=1.0,
-        description="Of a panorama: cd/m² of its linear value 1.",
+        description="Of a panorama: cd/m² of its linear value 1. A bake "
+        "says where it is not stated.",
     )
     white: tuple[Positive, Positive, Positive] = Field(
         default=(1.0, 1.0, 1.0),
@@ -162,7 +163,13 @@ class Placement(Table):
 
 
 class Probes(Table):
-    """Light probes."""
+    """Light probes.
+
+    They hold the light of the scene as it is when they are baked, E0 with its dimming. Of a
+    photographed scene they see what the photograph shows; where no surface is they see surroundings
+    of the luminance dimming·E0/π, which alone would give dimming·E0, unless a [[lamp]] is a sky or
+    hemisphere. Of surfaces beside the picture they see its mean.
+    """
 
     volume: Reference = Field(
         description="The probe volume, a .glb file: a bake writes it, a frame reads it."

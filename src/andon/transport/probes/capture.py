@@ -2,16 +2,22 @@
 
 What
     Surfaces answer as diffuse reflectors, L = ρ·E/π plus what they emit; rays that meet nothing see
-    the sky. The light is kept in parts, since not all of them may be reflected once more:
+    the sky, or around what a photograph shows surroundings of the luminance E0/π. The light is kept
+    in parts, since not all of them may be reflected once more:
 
 ==============  ================================  ==============================================
 part            is                                in later bounces
 ==============  ================================  ==============================================
 ``ambient``     the photograph's own light (or    no: E0 was measured, all its reflections are
-                E0 on surfaces without one)       in it already
+                E0 on surfaces without one), and  in it already
+                that of its surroundings
 ``emitted``     of materials, and the sky         the first light that is reflected
 ``reflected``   of lamps, or of earlier bounces   yes
 ==============  ================================  ==============================================
+
+Why surroundings
+    A photograph shows a part of what lights the things in it. The rest is known by E0 alone:
+    uniform surroundings of E0/π are those that give E0.
 
 Why the photograph is looked up
     A photographed surface has no reflectance of its own: it is what the picture shows of it, and
@@ -26,6 +32,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.harmonics import cube_solid_angles
 from andon.lamps import HemisphereLamp, SkyLamp
 from andon.responses import srgb_decode, srgb_encode
 from andon.transport.probes.photograph import Photograph
@@ -71,11 +78,14 @@ class Lighting:
     ambient_lux : (3,) E0 that surfaces stand in which no photograph shows, dimmed.
     photograph : what shows the real surface; None: its materials do.
     sky : lamps that are seen where nothing else is.
+    surroundings_cd_m2 : (3,) luminance of what a photograph does not show, where nothing else is;
+        None: it is dark there.
     """
 
     ambient_lux: Float
     photograph: Photograph | None = None
     sky: tuple[SkyLamp | HemisphereLamp, ...] = ()
+    surroundings_cd_m2: Float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +98,7 @@ class Capture:
         negative where light is taken away; the sum is ≥ 0.
     distance_m : (6, s, s) to the first surface, inf where there is none; not cut at the range.
     unphotographed_share : of the texels that show the real surface, those that no photograph saw.
+    surroundings_share : of the solid angle of all directions, that of the surroundings.
     not_finite : texels whose light was no number and is counted as none.
     """
 
@@ -96,6 +107,7 @@ class Capture:
     reflected_cd_m2: Float
     distance_m: Float
     unphotographed_share: float = 0.0
+    surroundings_share: float = 0.0
     not_finite: int = 0
 
     @property
@@ -139,11 +151,22 @@ def captured(
     parts = (ambient, emitted, reflected)
     for part in parts:
         part[dark] = 0
-    emitted[~valid] = sky_luminance(lighting.sky, directions[~valid])
+    around = 0.0
+    if lighting.surroundings_cd_m2 is not None:
+        ambient[~valid] = lighting.surroundings_cd_m2
+        around = _share(~valid)
+    sky = sky_luminance(lighting.sky, directions[~valid])
+    emitted[~valid] = np.maximum(sky, -ambient[~valid])
     bad = ~np.isfinite(ambient + emitted + reflected).all(axis=-1)
     for part in parts:
         part[bad] = 0
-    return Capture(*parts, seen.distance_m, share, int(np.count_nonzero(bad)))
+    return Capture(*parts, seen.distance_m, share, around, int(np.count_nonzero(bad)))
+
+
+def _share(texels: NDArray[np.bool_]) -> float:
+    """Of the solid angle of a cube map (6, s, s), that of `texels`."""
+    angles = np.broadcast_to(cube_solid_angles(texels.shape[-1]), texels.shape)
+    return float(angles[texels].sum() / angles.sum())
 
 
 def sky_luminance(sky: Sequence[SkyLamp | HemisphereLamp], directions: Float, /) -> Float:

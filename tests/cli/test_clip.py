@@ -105,10 +105,89 @@ def test_what_is_refused_before_anything_is_drawn(capfd, folder, words, message)
     assert message in run_refused(capfd, folder, "clip", "slide.toml", *words)
 
 
-def test_a_still_has_no_length(capfd, folder):
+@pytest.mark.parametrize("suffix", [".png", ""])
+def test_a_still_is_one_frame(capfd, folder, suffix):
     (folder / "slide.toml").write_text(SCENE.replace("duration_seconds = 0.6", ""))
-    line = run_refused(capfd, folder, "clip", "slide.toml", "-o", "a.webp")
-    assert "scene.duration_seconds: is 0: the scene is a still; state it, or --to" in line
+    outcome = run_andon(capfd, "clip", "slide.toml", "-o", f"a{suffix}", "--engine", "reference")
+    assert outcome.code == 0, outcome.err
+    assert "the scene has no scene.duration_seconds: it is a still, of one frame" in outcome.err
+    path = folder / f"a{suffix}" if suffix else folder / "a" / "0000.png"
+    assert suffix or len(list(path.parent.iterdir())) == 1
+    renderer = Renderer(load_scene(folder / "slide.toml"), "reference")
+    np.testing.assert_array_equal(read_picture(path).values, renderer.picture(0.0))
+
+
+VIRTUAL = """
+[scene]
+duration_seconds = 0.2
+frames_per_second = 10
+[rig.camera]
+width = 64
+height = 48
+fx = 57.6
+fy = 60.0
+cx = 30.0
+[ambient]
+illuminance_lux = 200.0
+[[object]]
+mesh = "box.glb"
+position = [0.0, 0.0, -1.5]
+"""
+
+
+def test_previews_see_the_same_with_fewer_pixels(capfd, folder):
+    (folder / "box.toml").write_text(VIRTUAL)
+    pictures = {}
+    for scale in (1, 0.5):
+        words = ["-o", f"of-{100 * scale:g}", "--engine", "reference", "--scale", scale]
+        outcome = run_andon(capfd, "clip", "box.toml", *words)
+        assert outcome.code == 0, outcome.err
+        pictures[scale] = read_picture(folder / f"of-{100 * scale:g}" / "0001.png").values.astype(
+            float
+        )
+    assert pictures[0.5].shape == (24, 32, 3)
+    halved = pictures[1].reshape(24, 2, 32, 2, 3).mean(axis=(1, 3))
+    assert np.ptp(halved) > 20
+    assert np.median(np.abs(halved - pictures[0.5])) <= 1
+    assert np.mean(np.abs(halved - pictures[0.5]) > 8) < 0.1
+    lit = [
+        np.argwhere(picture.max(axis=-1) > 40).mean(axis=0) for picture in (halved, pictures[0.5])
+    ]
+    np.testing.assert_allclose(*lit, atol=0.1)
+
+
+@pytest.mark.parametrize(
+    ("file", "scale", "message"),
+    [
+        ("slide.toml", 0.5, "--scale: needs a scene without a photograph"),
+        ("box.toml", 0, "--scale: must be > 0 and at most 8, got 0"),
+        ("box.toml", "nan", "--scale: must be > 0"),
+        ("file.toml", 0.5, "needs the width and height of the camera mono"),
+    ],
+)
+def test_previews_that_cannot_be(capfd, folder, file, scale, message):
+    (folder / "box.toml").write_text(VIRTUAL)
+    sized = VIRTUAL.split("width")[0] + 'file = "c.toml"\n[ambient]' + VIRTUAL.split("[ambient]")[1]
+    (folder / "file.toml").write_text(sized)
+    words = ["clip", file, "-o", "a", "--engine", "reference", "--scale", scale]
+    assert message in run_refused(capfd, folder, *words)
+
+
+def test_an_interrupted_folder_keeps_its_frames(capfd, folder, monkeypatch):
+    genuine = Renderer.picture
+
+    def picture(self, time=0.0, view=None):
+        if time > 0.25:
+            raise KeyboardInterrupt
+        return genuine(self, time, view)
+
+    monkeypatch.setattr(Renderer, "picture", picture)
+    outcome = run_andon(capfd, "clip", "slide.toml", "-o", "f", "--engine", "reference")
+    assert outcome.code == 130
+    assert outcome.err == "andon: interrupted; 3 of 6 frames are in f\n"
+    assert sorted(path.name for path in (folder / "f").iterdir()) == [
+        "0000.png", "0001.png", "0002.png",
+    ]  # fmt: skip
 
 
 def test_frame_times_lose_nothing():

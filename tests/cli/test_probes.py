@@ -164,6 +164,36 @@ def test_export_at_a_point_asks_the_walls_unless_told_otherwise(capfd, ringing):
 
 
 @pytest.mark.parametrize(
+    ("at", "outside"),
+    [("0.5,0,0", False), ("0.1,-0.1,-0.1", False), ("-1,0,2", True), ("0.5,0,0.01", True)],
+)
+def test_export_says_what_lies_outside(capfd, folder, at, outside):
+    outcome = run_andon(capfd, "probes", "export", "two.glb", "--format", "csv", "--at", at)
+    assert (
+        "outside the probes: light of the nearest point of their hull" in outcome.err
+    ) == outside
+
+
+def test_a_scene_names_its_volume(capfd, folder):
+    (folder / "lit.toml").write_text('[probes]\nvolume = "two.glb"\n')
+    (folder / "dark.toml").write_text('[probes]\nvolume = "none.glb"\n')
+    (folder / "bare.toml").write_text("")
+    for words in (["info"], ["export", "--format", "csv"]):
+        line = run_refused(capfd, folder, "probes", *words, "lit.toml")
+        assert line.endswith(f"lit.toml: is a scene; its volume is {folder / 'two.glb'}")
+        line = run_refused(capfd, folder, "probes", *words, "dark.toml")
+        assert "none.glb; andon probes bake dark.toml writes it" in line
+        line = run_refused(capfd, folder, "probes", *words, "bare.toml")
+        assert "is a scene, and has no [probes]" in line
+
+
+def test_help_says_the_suffixes(capfd, folder):
+    text = " ".join(run_andon(capfd, "probes", "export", "--help").out.replace("│", " ").split())
+    for suffix in FORMATS.values():
+        assert f"({suffix})" in text
+
+
+@pytest.mark.parametrize(
     ("words", "message"),
     [
         (("--format", "unty"), "did you mean 'unity'?"),
@@ -171,8 +201,16 @@ def test_export_at_a_point_asks_the_walls_unless_told_otherwise(capfd, ringing):
         (("--format", "gltf", "-o", "two.glb"), "is also the input"),
         (("--format", "three", "-o", "x.glb"), "must end in .json"),
         (("--format", "three", "-o", "none/x.json"), "folder 'none' does not exist"),
-        (("--format", "filament"), "holds one probe; choose a probe"),
+        (
+            ("--format", "filament"),
+            "holds one probe; choose one with --probe, or a point with --at",
+        ),
         (("--format", "csv", "--probe", "prob 3"), "did you mean 'probe 3'?"),
+        (
+            ("--format", "csv", "--probe", "xyz"),
+            "is called 'xyz'; give one of 'probe 0', 'probe 1', ",
+        ),
+        (("--format", "csv", "--state", ""), "there is no state ''"),
         (("--format", "csv", "--probe", "12"), "probe: must be 0…9, got 12"),
         (("--format", "csv", "--at", "1,2"), "must be three numbers x,y,z"),
         (("--format", "csv", "--at", "1,2,nan"), "must be three numbers x,y,z"),

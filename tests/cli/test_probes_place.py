@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from andon.files.meshes.gltf import read_gltf_nodes
-from andon.files.pictures import read_picture
+from andon.files.pictures import read_picture, write_png
 from andon.files.volumes import ProbeVolume, write_volume
 from andon.quantities import merged
 from andon.scene import load_scene
@@ -137,6 +137,60 @@ def test_refusals_of_place(capfd, folder, words, expected):
     assert expected in run_refused(capfd, folder, "probes", "place", *words)
 
 
+@pytest.mark.parametrize(("shape", "message"), [(None, "p.png"), ((8, 9), "twice as wide")])
+def test_place_looks_at_panoramas(capfd, folder, shape, message):
+    if shape is not None:
+        write_png(folder / "p.png", np.zeros((*shape, 3), np.uint8))
+    text = SCENE.replace('role = "sky"', 'panorama = "p.png"')
+    (folder / "room.toml").write_text(text)
+    assert message in run_refused(capfd, folder, "probes", "place", "room.toml")
+
+
+def test_what_moved_is_said_once(capfd, folder):
+    (folder / "room.toml").write_text(SCENE.replace("0.5", "0.0"))
+    outcome = run_andon(capfd, "probes", "place", "room.toml")
+    assert (outcome.out + outcome.err).count("moved") <= 1
+
+
+def test_bake_says_what_is_in_walls_once_and_succeeds(capfd, folder):
+    text = SCENE.replace("counts = [2, 2, 3]", "counts = [2, 2, 2]")
+    text = text.replace('"room.probes.glb"', '"room.probes.glb"\ncube_size_px = 8')
+    (folder / "room.toml").write_text(text)
+    outcome = run_andon(capfd, "probes", "bake", "room.toml", "--engine", "reference")
+    assert outcome.code == 0, outcome.err
+    assert outcome.err.count("pillar") == 1
+    other = ["--state", "night", "--engine", "reference"]
+    assert run_andon(capfd, "probes", "bake", "room.toml", *other).code == 0
+    (folder / "room.toml").write_text(text.replace("[2, 2, 2]", "[2, 2, 3]"))
+    words = ["probes", "bake", "room.toml", "--engine", "reference"]
+    line = run_refused(capfd, folder, *words)
+    assert "its state 'night' would be lost: it has 10 probes, not 14" in line
+    outcome = run_andon(capfd, *words, "--replace")
+    assert outcome.code == 0
+    assert "the volume that was there is replaced: it had 10 probes, not 14" in outcome.err
+    assert "--state: must be a name" in run_refused(capfd, folder, *words, "--state", "")
+
+
+def test_a_frame_says_how_a_state_is_added(capfd, folder):
+    write_light(folder)
+    text = "[rig.camera]\nwidth = 8\nheight = 8\nfx = 8.0\n" + SCENE.replace(
+        "[probes]", '[probes]\nstate = "dusk"'
+    )
+    (folder / "dusk.toml").write_text(text)
+    line = run_refused(capfd, folder, "clip", "dusk.toml", "-o", "a.png")
+    assert "probes.state: there is no state 'dusk'" in line
+    assert line.endswith("andon probes bake dusk.toml --state dusk adds it")
+
+
+def test_an_interrupted_bake_says_how_it_goes_on(capfd, folder, monkeypatch):
+    def stopped(*words, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("andon.bake.bake_file", stopped)
+    line = run_refused(capfd, folder, "probes", "bake", "room.toml", code=130)
+    assert line == "andon: interrupted; run it again and it goes on"
+
+
 def test_show_draws_the_places_before_a_bake(capfd, folder):
     outcome = run_andon(capfd, "probes", "show", "room.toml", "--size", "320x240")
     assert outcome.code == 0, outcome.err
@@ -201,6 +255,6 @@ def test_refusals_of_show(capfd, folder, words, expected):
 
 def test_help_has_examples(capfd, folder):
     text = " ".join(run_andon(capfd, "probes", "show", "--help").out.split())
-    assert "andon probes show scene.toml -o probes.png" in text
+    assert "andon probes show basic.toml -o probes.png" in text
     text = " ".join(run_andon(capfd, "probes", "place", "--help").out.split())
-    assert "andon probes place scene.toml -o locators.glb" in text
+    assert "andon probes place basic-lattice.toml -o locators.glb" in text

@@ -416,3 +416,14 @@ def test_ten_thousand_probes_are_checked_and_read_in_moderate_memory(tmp_path):
     assert found.count == 10_000
     assert len(found.cells.corners) > 5 * 10_000
     assert peak < 20 * path.stat().st_size
+
+
+def test_a_volume_is_one_line_on_the_screen():
+    assert repr(two_rooms()) == (
+        "ProbeVolume(10 probes; order 2; states 'day', 'night'; zones 'west', 'east'; 4 cells; "
+        "distances; absolute)"
+    )
+    bare = replace(two_rooms(), states={}, cells=None, distances=None, zones=two_rooms().zones[:1])
+    assert repr(bare) == (
+        "ProbeVolume(10 probes; no light; zones 'west'; not joined; no distances; absolute)"
+    )

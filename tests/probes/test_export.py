@@ -140,7 +140,7 @@ def test_filament_by_its_own_formula(order):
 
 
 def test_filament_is_one_probe():
-    with pytest.raises(InputError, match="holds one probe; choose a probe"):
+    with pytest.raises(InputError, match="holds one probe; choose one with --probe"):
         filament_text([probe(), probe()], MEASURED)
 
 

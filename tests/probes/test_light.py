@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from andon.errors import InputError
 from andon.files.volumes import Zone
 from andon.gpu.bindings import bind_group
 from andon.gpu.passes import FullscreenPass
@@ -51,6 +52,18 @@ def test_light_is_never_negative_and_nan_stays_nan():
     assert lux[0].min() > 1
     assert (lux[1] == 0).all()
     assert np.isnan(lux[2]).all()
+
+
+def test_normals_have_any_length_and_shapes_are_checked():
+    light = light_of(random_volume(POSITIONS["lattice"]), walls=False)
+    points, normals = np.random.default_rng(1).uniform(0, 4, (20, 3)), unit_vectors(20)
+    lux = probe_illuminance(light, points, normals)
+    longer = np.linspace(0.1, 30, 20)[:, None] * normals
+    assert_agree(probe_illuminance(light, points, longer), lux, rtol=1e-9)
+    assert np.isnan(probe_illuminance(light, points[:1], np.zeros((1, 3)))).all()
+    for wrong in ((points[0], normals), (points, normals[0]), (points, normals[:3])):
+        with pytest.raises(InputError, match=r"\(q, 3\)|as many as points"):
+            probe_illuminance(light, *wrong)
 
 
 @pytest.mark.parametrize("name", POSITIONS)

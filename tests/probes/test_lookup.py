@@ -243,6 +243,21 @@ def test_a_walk_that_is_cut_short_is_finished_by_a_search(monkeypatch):
     )
 
 
+@pytest.mark.parametrize(
+    "points",
+    [np.zeros(3), np.zeros((4, 2)), np.zeros((2, 2, 3)), np.zeros((1, 3), bool), [["a", "b", "c"]],
+     np.zeros((1, 3), complex), 1.0],
+)  # fmt: skip
+def test_what_is_no_list_of_points_is_refused(engine, points):
+    space = space_of(uniform(30))
+    with pytest.raises(InputError, match=r"points: must be real numbers of shape \(q, 3\)"):
+        space.locate(points, engine=engine)
+    with pytest.raises(InputError, match=r"points: must be real numbers of shape \(q, 3\)"):
+        space.lookup(points, np.ones(30), engine=engine)
+    whole, real = (space.locate(at, engine=engine) for at in ([[0, 1, 0]], np.eye(3)[1:2]))
+    np.testing.assert_array_equal(whole.weights, real.weights)
+
+
 def test_types_and_shapes(engine):
     space = space_of(uniform(30))
     points = uniform(7)

@@ -21,7 +21,7 @@ from andon.scene import Scene
 from andon.scene.probes import Probes
 from andon.surface.load import load_surface
 from andon.surface.still import still_geometry
-from andon.transport.probes.placement import Placed, place_probes
+from andon.transport.probes.placement import Placed, Tally, place_probes
 
 __all__ = ["Written", "bake_file", "placed_in", "scene_geometry"]
 
@@ -37,7 +37,7 @@ class Written:
     states : all of the file.
     replaced : in what the probes of the volume that was there differed; it is gone. Empty: there
         was none, or it had the same.
-    warnings : of the placement.
+    warnings, tally : of the placement.
     """
 
     path: Path
@@ -45,6 +45,7 @@ class Written:
     states: tuple[str, ...]
     replaced: tuple[str, ...]
     warnings: tuple[str, ...]
+    tally: Tally
 
 
 def bake_file(
@@ -83,7 +84,9 @@ def bake_file(
         volume = joined(path, baked.volume)
         write_volume(path, volume)
         journal.clear()
-    return Written(path, baked.report, tuple(volume.states), replaced, placed.warnings)
+    return Written(
+        path, baked.report, tuple(volume.states), replaced, placed.warnings, placed.tally
+    )
 
 
 def _target(scene: Scene) -> tuple[Probes, Path]:

@@ -81,20 +81,27 @@ def clip(
     ] = None,
     view: Annotated[str | None, typer.Option(help="left or right of a stereo rig.")] = None,
     engine: EngineOption = "auto",
+    scale: Annotated[
+        float, typer.Option(help="Of the cameras' pixels, for previews; without a photograph.")
+    ] = 1.0,
 ) -> None:
     """Draw a scene over time: lamps, objects and their animations move.
 
-    The frame of the end is left out, so that a clip of a whole round loops without a stop.
+    The frame of the end is left out, so that a clip of a whole round loops without a stop. A scene
+    without a duration is one frame.
 
     Examples:
 
         andon clip walk.toml -o walk.webp
 
+        andon clip walk.toml --scale 0.25 --fps 10 -o preview.webp
+
         andon clip walk.toml --from 1 --to 3 --fps 25 -o frames/
     """
     from andon.cli.clip import ClipOptions, run
 
-    run(ClipOptions(scene, out, start_seconds, end_seconds, frames_per_second, view, engine))
+    times = start_seconds, end_seconds, frames_per_second
+    run(ClipOptions(scene, out, *times, view, engine, scale))
 
 
 @app.command()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from andon.cli.console import note
+from andon.cli.console import Interrupted, note
 from andon.cli.relight import check_view
 from andon.cli.without_photograph import refuse_photograph, white_text
 from andon.errors import InputError, MachineError
@@ -18,8 +18,10 @@ from andon.errors import InputError, MachineError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from andon.engines.prepared import Prepared
     from andon.pipeline import Renderer
     from andon.scene import Scene
+    from andon.scene.camera import Camera
 
 __all__ = ["ClipOptions", "run"]
 
@@ -27,6 +29,8 @@ __all__ = ["ClipOptions", "run"]
 MOST_BYTES = 2 << 30
 # More is a mistyped time or rate: a day at 60 frames a second has five million.
 MOST_FRAMES = 1_000_000
+# More pixels than a screen has are a mistyped number.
+LARGEST_SCALE = 8.0
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,7 @@ class ClipOptions:
     frames_per_second: float | None
     view: str | None
     engine: str
+    scale: float = 1.0
 
 
 def run(options: ClipOptions) -> None:
@@ -48,7 +53,7 @@ def run(options: ClipOptions) -> None:
     from andon.files.pictures.moving import check_moving
     from andon.scene import load_scene
 
-    scene = load_scene(options.scene)
+    scene = _scaled(load_scene(options.scene), options.scale)
     check_view(scene, options.view)
     refuse_photograph(options.out, scene)
     rate = options.frames_per_second
@@ -63,14 +68,59 @@ def run(options: ClipOptions) -> None:
         _write_folder(options, renderer, times)
     else:
         _write_file(options, renderer, times, rate)
-    white = white_text(scene, renderer.prepared)
-    if white is not None:
-        note(f"white is {white}")
-    for line in renderer.prepared.surface.notes:
+    for line in _notes(options, scene, renderer.prepared):
         note(line)
-    if renderer.prepared.ignored:
-        note(f"not drawn: {', '.join(renderer.prepared.ignored)} (later versions)")
     print(options.out)
+
+
+def _notes(options: ClipOptions, scene: Scene, prepared: Prepared) -> list[str]:
+    notes: list[str] = []
+    if options.end_seconds is None and scene.scene.duration_seconds == 0:
+        notes.append("the scene has no scene.duration_seconds: it is a still, of one frame")
+    white = white_text(scene, prepared)
+    if white is not None:
+        notes.append(f"white is {white}")
+    notes += prepared.surface.notes
+    if prepared.ignored:
+        notes.append(f"not drawn: {', '.join(prepared.ignored)} (later versions)")
+    return notes
+
+
+def _scaled(scene: Scene, scale: float) -> Scene:
+    """The scene with cameras of that share of their pixels, which see the same."""
+    if scale == 1:
+        return scene
+    if not 0 < scale <= LARGEST_SCALE:
+        raise InputError(
+            f"must be > 0 and at most {LARGEST_SCALE:g}, got {scale:g}", field="--scale"
+        )
+    if scene.has_photograph or scene.rig is None:
+        raise InputError(
+            "needs a scene without a photograph, whose pixels are as many as they are",
+            field="--scale",
+            remedy="leave it out",
+        )
+    cameras = {name: _scaled_camera(camera, name, scale) for name, camera in scene.rig.cameras}
+    names = {"camera" if name == "mono" else name: own for name, own in cameras.items()}
+    return scene.model_copy(update={"rig": scene.rig.model_copy(update=names)})
+
+
+def _scaled_camera(camera: Camera, name: str, scale: float) -> Camera:
+    if camera.width is None or camera.height is None:
+        raise InputError(
+            f"needs the width and height of the camera {name}, which its own file has",
+            field="--scale",
+            remedy="state them in [rig], or leave it out",
+        )
+    size = {side: max(1, round(getattr(camera, side) * scale)) for side in ("width", "height")}
+    shares = {"x": size["width"] / camera.width, "y": size["height"] / camera.height}
+    changed: dict[str, float] = dict(size)
+    for key in ("fx", "fy", "cx", "cy"):
+        value = getattr(camera, key)
+        middle = 0.5 if key[0] == "c" else 0.0  # pixel 0 has its middle at 0, its edge at −½
+        if value is not None:
+            changed[key] = (value + middle) * shares[key[1]] - middle
+    return camera.model_copy(update=changed)
 
 
 def _check_out(out: Path) -> bool:
@@ -114,13 +164,8 @@ def _times(options: ClipOptions, scene: Scene, rate: float) -> list[float]:
         raise InputError(f"must be > 0, got {rate:g}", field="--fps")
     start = options.start_seconds or 0.0
     end = scene.scene.duration_seconds if options.end_seconds is None else options.end_seconds
-    if options.end_seconds is None and end == 0:
-        raise InputError(
-            "is 0: the scene is a still",
-            file=scene.file,
-            field="scene.duration_seconds",
-            remedy="state it, or --to",
-        )
+    if options.end_seconds is None and scene.scene.duration_seconds == 0:
+        return [start]
     if end <= start:
         raise InputError(f"must be after --from, {start:g} s, got {end:g}", field="--to")
     # A hair less, so that rounding makes no frame of its own.
@@ -142,8 +187,12 @@ def _write_folder(options: ClipOptions, renderer: Renderer, times: list[float]) 
     digits = max(4, len(str(len(times) - 1)))
     with _progress(len(times)) as step:
         for number, time in enumerate(times):
-            picture = renderer.picture(time, options.view)
-            write_png(out / f"{number:0{digits}d}.png", picture)
+            try:
+                picture = renderer.picture(time, options.view)
+                write_png(out / f"{number:0{digits}d}.png", picture)
+            except KeyboardInterrupt:
+                kept = f"{number} of {len(times)} frames are in {out}"
+                raise Interrupted(f"interrupted; {kept}") from None
             step()
 
 
@@ -174,6 +223,9 @@ def _progress(count: int) -> Generator[Callable[[], None]]:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 
     columns = ("frames", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    console = Console(stderr=True)
+    # Where nobody looks at it, all that is left of a bar is an empty line.
+    hidden = not console.is_terminal
+    with Progress(*columns, console=console, transient=True, disable=hidden) as bar:
         task = bar.add_task("frames", total=count)
         yield lambda: bar.advance(task)

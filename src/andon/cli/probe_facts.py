@@ -22,9 +22,9 @@ LISTED = 12
 
 def show(file: Path, *, json: bool) -> None:
     """Prints what the probe volume `file` holds, as a table or as JSON."""
-    from andon.files.volumes import read_volume
+    from andon.cli.probe_volume import volume_of
 
-    facts = facts_of(read_volume(file), file.stat().st_size)
+    facts = facts_of(volume_of(file), file.stat().st_size)
     if json:
         print(dumps(facts, indent=2, ensure_ascii=False))
         return

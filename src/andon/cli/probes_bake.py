@@ -88,7 +88,9 @@ class _Bar:
         from rich.console import Console
         from rich.progress import Progress
 
-        self._bar = Progress(console=Console(stderr=True), transient=True)
+        console = Console(stderr=True)
+        # Where nobody looks at it, all that is left of a bar is an empty line.
+        self._bar = Progress(console=console, transient=True, disable=not console.is_terminal)
         self._bar.start()
         self._task = self._bar.add_task("placing", total=None)
         return self
@@ -105,10 +107,11 @@ def _notes(written: Written) -> list[str]:
     notes: list[str] = []
     if written.replaced:
         notes.append(f"the volume that was there is replaced: it had {'; '.join(written.replaced)}")
-    if report.in_walls:
+    unsaid = tuple(name for name in report.in_walls if name not in written.tally.in_walls)
+    if unsaid:
         notes.append(
-            f"{len(report.in_walls)} of {report.probes} probes see mostly backs of surfaces, as "
-            f"inside a wall: {_listed(report.in_walls)}"
+            f"{len(unsaid)} of {report.probes} probes see mostly backs of surfaces, as inside a "
+            f"wall: {_listed(unsaid)}"
         )
     if report.damaged:
         notes.append(f"{report.damaged} kept results were not whole and are captured again")

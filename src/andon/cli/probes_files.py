@@ -20,9 +20,9 @@ def probes_info(
 
     Examples:
 
-        andon probes info room.glb
+        andon probes info basic.probes.glb
 
-        andon probes info room.glb --json
+        andon probes info basic.probes.glb --json
     """
     from andon.cli.probe_facts import show
 
@@ -35,8 +35,9 @@ def probes_export(
         str,
         typer.Option(
             metavar="three|gltf|unity|filament|csv",
-            help="three: LightProbe JSON; gltf: EXT_lights_image_based; unity: JSON in the order "
-            "of SphericalHarmonicsL2; filament: as cmgen --sh.",
+            help="three: LightProbe JSON (.json); gltf: EXT_lights_image_based (.glb); unity: "
+            "JSON in the order of SphericalHarmonicsL2 (.json); filament: as cmgen --sh, of one "
+            "probe (.txt); csv: a table (.csv).",
         ),
     ],
     probe: Annotated[
@@ -44,10 +45,17 @@ def probes_export(
     ] = None,
     at: Annotated[
         str | None,
-        typer.Option(metavar="X,Y,Z", help="The light between the probes at a point, metres."),
+        typer.Option(
+            metavar="X,Y,Z",
+            help="The light between the probes at a point, metres; "
+            "outside, that of the nearest point between them.",
+        ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="File; default: text is printed.")
+        Path | None,
+        typer.Option(
+            "-o", "--out", help="File, its suffix as the format's; default: text is printed."
+        ),
     ] = None,
     state: Annotated[str | None, typer.Option(help="Of the volume; default: its first.")] = None,
     blend_state: Annotated[str | None, typer.Option(help="A second state, mixed in.")] = None,
@@ -78,11 +86,12 @@ def probes_export(
 
     Examples:
 
-        andon probes export room.glb --format three --probe door --white-cd-m2 200 -o door.json
+        andon probes export basic.probes.glb --format three --probe green
+            --white-cd-m2 6000 -o green.json
 
-        andon probes export room.glb --format filament --at 0,1.5,-2
+        andon probes export basic.probes.glb --format filament --at 0,1.5,-2
 
-        andon probes export room.glb --format csv --state night -o night.csv
+        andon probes export basic.probes.glb --format csv -o light.csv
     """
     from andon.cli.probe_export import ExportOptions, run
 

@@ -30,12 +30,13 @@ def place(
 
     Examples:
 
-        andon probes place scene.toml
+        andon probes place basic-lattice.toml
 
-        andon probes place scene.toml -o places.toml
+        andon probes place basic-lattice.toml -o places.toml
 
-        andon probes place scene.toml -o locators.glb
+        andon probes place basic-lattice.toml -o locators.glb
     """
+    from andon.bake.panoramas import check_panoramas
     from andon.bake.to_file import placed_in
     from andon.scene import load_scene
 
@@ -45,6 +46,7 @@ def place(
             raise InputError("is also the input, and would be overwritten", file=out)
     loaded = load_scene(scene)
     placed = placed_in(loaded)
+    check_panoramas(loaded, placed)
     _print(placed)
     for warning in placed.warnings:
         note(printable(warning))

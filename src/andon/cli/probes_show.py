@@ -68,11 +68,11 @@ def show(
 
     Examples:
 
-        andon probes show room.probes.glb --what balls,cells
+        andon probes show basic.probes.glb --what balls,cells
 
-        andon probes show scene.toml -o probes.png
+        andon probes show basic.toml -o probes.png
 
-        andon probes show scene.toml -o near.png --from 0,2,4 --at 0,1,0 --irradiance
+        andon probes show basic.toml -o near.png --from 0,2,4 --at 0,1,0 --irradiance
     """
     check_writable(out, (".png",), "--out")
     shape = _size(size)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from shlex import quote
 from typing import Literal
 
 import numpy as np
@@ -148,7 +149,8 @@ def probes_of(scene: Scene, /) -> tuple[SceneProbes | None, tuple[str, ...]]:
     except InputError as error:
         field = error.field or "volume"
         field = field if field.startswith("probes.") else f"probes.{field}"
-        raise InputError(error.rule, file=scene.file, field=field, remedy=error.remedy) from error
+        remedy = _adding(error, scene, table)
+        raise InputError(error.rule, file=scene.file, field=field, remedy=remedy) from error
     notes: tuple[str, ...] = ()
     if table.visibility and light.walls is None:
         notes = (f"{path.name} holds no distances: walls hide no probes; bake it with visibility",)
@@ -222,6 +224,15 @@ def changed_since_bake(
         f"the scene has changed since its probes were baked: {', '.join(found)}; andon probes bake "
         f"{scene.file} renews them",
     )
+
+
+def _adding(error: InputError, scene: Scene, table: Probes) -> str | None:
+    """How a state comes into the volume that it does not have."""
+    name = {"state": table.state, "blend_state": table.blend_state}.get(error.field or "")
+    if name is None:
+        return error.remedy
+    adds = f"andon probes bake {scene.file} --state {quote(name)} adds it"
+    return f"{error.remedy} Or {adds}" if error.remedy else adds
 
 
 def light_of_volume(volume: ProbeVolume, table: Probes, /) -> ProbeLight:

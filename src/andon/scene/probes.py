@@ -181,7 +181,9 @@ class Probes(Table):
     state: Name | None = Field(
         default=None,
         description="State of the volume (day, night) that is baked, or seen; default: its "
-        "first, and of a bake `default`.",
+        "first, and of a bake `default`. A second one comes from a second scene file with the same "
+        "volume, places, zones and order, other lamps and another state (or `andon probes bake "
+        "--state`).",
     )
     blend_state: Name | None = Field(
         default=None,

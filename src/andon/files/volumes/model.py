@@ -122,7 +122,7 @@ class Distances:
     far_m: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ProbeVolume:
     """Light probes: where, for what, with which light, and the space between them.
 
@@ -153,6 +153,19 @@ class ProbeVolume:
     distances: Distances | None = None
     photometry: Photometry = "absolute"
     notes: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    def __repr__(self) -> str:
+        """Counts and names, without the arrays."""
+        parts = [
+            f"{self.count} probes",
+            f"order {self.order}" if self.states else "no light",
+            f"states {', '.join(map(repr, self.states))}" if self.states else "",
+            f"zones {', '.join(repr(zone.name) for zone in self.zones)}",
+            "not joined" if self.cells is None else f"{len(self.cells.corners)} cells",
+            "no distances" if self.distances is None else "distances",
+            self.photometry,
+        ]
+        return f"ProbeVolume({'; '.join(part for part in parts if part)})"
 
     @property
     def count(self) -> int:

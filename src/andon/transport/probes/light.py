@@ -23,10 +23,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.errors import InputError
 from andon.files.volumes.model import ProbeVolume
 from andon.harmonics import basis, convolved, deringed, order_of
 from andon.transport.probes.cells import build_cells
 from andon.transport.probes.hidden import Walls, hidden_mix, walls_of
+from andon.transport.probes.points import points_of
 from andon.transport.probes.space import Mix, ProbeSpace
 from andon.transport.probes.states import state_coefficients
 
@@ -123,11 +125,19 @@ def probe_mix(
 def probe_illuminance(
     light: ProbeLight, points: Float, normals: Float, /, *, signed: bool = False
 ) -> Float:
-    """Illuminance (q, 3) in lux at points (q, 3), metres, world, that face unit normals (q, 3).
+    """Illuminance (q, 3) in lux at points (q, 3), metres, world, that face normals (q, 3).
 
-    Never negative, unless `signed`: of light that is the difference of two. NaN for a point or a
-    normal that is not finite.
+    Normals may have any length but 0. Never negative, unless `signed`: of light that is the
+    difference of two. NaN for a point or a normal that is not finite, and for a normal of 0.
+    Raises `InputError` for arrays that are not (q, 3).
     """
+    points, normals = points_of(points, "points"), points_of(normals, "normals")
+    if len(points) != len(normals):
+        raise InputError(
+            f"must be as many as points, {len(points)}, got {len(normals)}", field="normals"
+        )
+    with np.errstate(invalid="ignore", divide="ignore"):
+        normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     lit = convolved(light.coefficients)
     order = order_of(lit.shape[1])
     lux = np.empty((len(points), 3))

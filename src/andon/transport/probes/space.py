@@ -17,6 +17,7 @@ from andon.transport.probes.cells import build_cells
 from andon.transport.probes.delaunay import volumes
 from andon.transport.probes.grid import start_grid
 from andon.transport.probes.locate import Mix, locate
+from andon.transport.probes.points import points_of
 from andon.transport.probes.zones import boxes_of, chosen_zones
 
 __all__ = ["LookupEngine", "Mix", "ProbeSpace"]
@@ -149,8 +150,8 @@ class ProbeSpace:
         """The probes around points (q, 3) in metres, world, and their weights.
 
         Inside the hull of a point's zone, the barycentric coordinates in a tetrahedron; outside,
-        the coordinates of the closest point of the hull. Never raises for an array of numbers:
-        points with a NaN or an infinity get weights of NaN, and so light of NaN.
+        the coordinates of the closest point of the hull. Points with a NaN or an infinity get
+        weights of NaN, and so light of NaN. Raises `InputError` for what is no (q, 3) of numbers.
 
         Parameters
         ----------
@@ -159,9 +160,9 @@ class ProbeSpace:
         engine : numpy, numba, or auto: Numba if it is installed and there are many points. Both
             give the same light within rounding; on a face, they may name either cell.
         """
-        if not _compile(engine, len(points)):
-            return locate(self, points, start)
-        at = np.ascontiguousarray(points, np.float64).reshape(-1, 3)
+        at = points_of(points, "points")
+        if not _compile(engine, len(at)):
+            return locate(self, at, start)
         first = np.zeros(0, np.int32) if start is None else np.ascontiguousarray(start, np.int32)
         mix = Mix(
             np.zeros((len(at), 4), np.int32), np.zeros((len(at), 4)), np.zeros(len(at), np.int32)
@@ -178,9 +179,9 @@ class ProbeSpace:
         returned as float32 if `values` are, else as float64.
         """
         kind = np.float32 if values.dtype == np.float32 else np.float64
-        if not _compile(engine, len(points)):
-            return self.mixed(locate(self, points, None), values).astype(kind)
-        at = np.ascontiguousarray(points, np.float64).reshape(-1, 3)
+        at = points_of(points, "points")
+        if not _compile(engine, len(at)):
+            return self.mixed(locate(self, at, None), values).astype(kind)
         flat = np.ascontiguousarray(values, kind).reshape(len(values), -1)
         result = np.empty((len(at), flat.shape[1]), kind)
         _numba().lookup_all(self._packed, at, flat, result)

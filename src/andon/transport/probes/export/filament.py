@@ -19,6 +19,8 @@ def filament_text(lights: Sequence[PlacedLight], unit: ExportUnit) -> bytes:
     """The text of one probe. Raises `InputError` for several: the format has no place for them."""
     if len(lights) != 1:
         raise InputError(
-            "the Filament format holds one probe", field="format", remedy="choose a probe"
+            "the Filament format holds one probe",
+            field="format",
+            remedy="choose one with --probe, or a point with --at",
         )
     return cmgen_text(unit.scale * lights[0].coefficients).encode()

@@ -16,6 +16,9 @@ __all__ = ["Export", "ExportUnit", "PlacedLight", "chosen_probe", "probe_lights"
 
 Float = NDArray[np.float64]
 
+# Names that a message lists before it goes on with "…".
+SHOWN_NAMES = 16
+
 
 @dataclass(frozen=True, eq=False)
 class PlacedLight:
@@ -104,9 +107,13 @@ def chosen_probe(names: Sequence[str], typed: str) -> int:
         if number < len(names):
             return number
         raise InputError(f"must be 0…{len(names) - 1}, got {number}", field="probe")
-    near = nearest_name(typed, list(dict.fromkeys(names)))
+    known = list(dict.fromkeys(names))
+    near = nearest_name(typed, known)
+    listed = ", ".join(map(repr, known[:SHOWN_NAMES])) + (", …" if len(known) > SHOWN_NAMES else "")
     raise InputError(
         f"no probe is called {typed!r}",
         field="probe",
-        remedy=f"did you mean {near!r}?" if near else f"or give a number 0…{len(names) - 1}",
+        remedy=f"did you mean {near!r}?"
+        if near
+        else f"give one of {listed}, or a number 0…{len(names) - 1}",
     )

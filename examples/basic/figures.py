@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 import andon
 from andon.bake.to_file import bake_file
 from andon.display.false_colour import contact_sheet
-from andon.display.probe_pictures import Look, around_view, probe_picture
+from andon.display.probe_pictures import Look, around_view, framed_points, probe_picture
 from andon.files.pictures import write_png
 from andon.files.volumes import read_volume
 from andon.surface.still import still_geometry
@@ -50,8 +50,7 @@ def placement(name: str) -> Rgb:
     assert scene.probes is not None
     geometry = still_geometry(scene)
     volume = read_volume(HERE / scene.probes.volume)
-    points = np.concatenate([volume.positions, geometry.positions])
-    view = around_view(points, (SIZE["width"], SIZE["height"]), eye=None, target=None)
+    view = around_view(framed_points(volume, geometry), (SIZE["width"], SIZE["height"]))
     return probe_picture(volume, view, Look(), geometry=geometry, caption=name).rgb
 
 

@@ -243,7 +243,7 @@ def test_show_of_a_volume_alone_and_of_its_states(capfd, folder):
         (["room.toml", "--at", "1,2,nan"], "--at: must be three numbers"),
         (["room.toml", "--exposure", "0"], "--exposure: must be > 0"),
         (["room.probes.glb", "--state", "dusk"], "there is no state 'dusk'; it has day, night"),
-        (["room.probes.glb", "--from", "0,5,0", "--at", "0,1,0"], "not above each other"),
+        (["room.probes.glb", "--from", "0,5,0", "--at", "0,5,0"], "must lie apart"),
     ],
 )
 def test_refusals_of_show(capfd, folder, words, expected):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from andon.display.probe_pictures import STRIP_PX, Look, around_view, probe_picture
+from andon.display.probe_pictures import STRIP_PX, Look, around_view, framed_points, probe_picture
 from andon.display.probe_pictures.canvas import SEEN_THROUGH, Canvas
 from andon.display.probe_pictures.legend import round_length
 from andon.display.probe_pictures.solids import draw_balls, draw_geometry, shown_light
@@ -99,6 +99,54 @@ def test_only_fronts_of_surfaces_are_drawn():
     canvas = Canvas(FRONT, BLACK)
     draw_geometry(canvas, block((2, 2, 2), (0, 0, 0)))
     assert canvas.depth[40, 50] == pytest.approx(3)
+
+
+@pytest.mark.parametrize(("inwards", "solid"), [(False, False), (True, False), (True, True)])
+def test_walls_between_the_eye_and_the_probes_are_left_out(inwards, solid):
+    """Near walls go, whichever way they are turned; far ones and the floor stay."""
+    room = block((2, 2, 2), (0, 0, 0), inwards=inwards)
+    if solid:
+        outer = block((2.4, 2.4, 2.4), (0, 0, 0))
+        room = Geometry(
+            np.concatenate([room.positions, outer.positions]),
+            np.concatenate([room.triangles, outer.triangles + len(room.positions)]),
+        )
+    probes = np.random.default_rng(0).uniform(-0.8, 0.8, (20, 3))
+    canvas = Canvas(FRONT, BLACK)
+    draw_geometry(canvas, room, probes)
+    assert canvas.depth[40, 50] == pytest.approx(5)
+    assert canvas.colour[40, 50].min() > 0.2
+
+
+def test_plan_views_have_their_back_at_the_top():
+    """From above and from below; a hair off the plumb line keeps its upright."""
+    for side in (3.0, -3.0):
+        view = around_view(
+            np.eye(3), (300, 260), eye=np.array([0.5, side, 0.2]), target=np.array([0.5, 0, 0.2])
+        )
+        back = view.project(transform_points(view.camera_from_world, np.array([0.5, 0, -0.8])))
+        assert back[1] < view.cy - 20
+        assert back[0] == pytest.approx(view.cx)
+
+
+@pytest.mark.parametrize("count", [1, 2, 4])
+def test_all_balls_are_inside_the_picture(count):
+    held = volume(np.full((count, 4, 3), 2.0), count=count)
+    view = around_view(framed_points(held), (320, 240))
+    picture = probe_picture(held, view, Look(("balls",))).rgb[: 240 - STRIP_PX].astype(int)
+    edge = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
+    assert edge.max() < 80, "only what lies behind everything"
+    assert picture.max() > 150
+
+
+def test_balls_have_no_holes():
+    """A series that swings below 0 opposite to a lamp is smoothed, not clipped."""
+    light = basis(np.array([[0.0, 0.0, -1.0]]), 2)[0][:, None] * np.ones((1, 1, 3))
+    held = volume(light, count=1)
+    view = around_view(framed_points(held), (320, 240), eye=np.array([0, 0, 2.0]))
+    picture = probe_picture(held, view, Look(("balls",))).rgb[: 240 - STRIP_PX]
+    ball = picture[60:120, 130:190].reshape(-1, 3).max(axis=1)
+    assert (ball < 2).mean() < 0.05
 
 
 def test_materials_and_textures_are_told_apart():

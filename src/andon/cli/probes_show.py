@@ -63,8 +63,8 @@ def show(
 ) -> None:
     """Draw a probe volume: balls with the probes' light, cells, hull, zones.
 
-    Of a scene, the volume that it names is drawn amid its surfaces; while there is none, the
-    places where its probes will go.
+    Of a scene, the volume that it names is drawn amid its surfaces, without the walls that hide
+    it; while there is none, the places where its probes will go.
 
     Examples:
 
@@ -175,21 +175,15 @@ def _check_state(volume: ProbeVolume, state: str | None, file: Path) -> None:
 def _view(
     subject: _Subject, size: tuple[int, int], eye: Float | None, target: Float | None
 ) -> View:
-    import numpy as np
+    from andon.display.probe_pictures import around_view, framed_points
 
-    from andon.display.probe_pictures import around_view
-
-    points = subject.volume.positions
-    if subject.geometry is not None and len(subject.geometry.triangles):
-        points = np.concatenate([points, subject.geometry.positions])
+    points = framed_points(subject.volume, subject.geometry)
     try:
         return around_view(points, size, eye=eye, target=target)
     except InputError as error:
         if error.field != "look_at":
             raise
-        raise InputError(
-            "must lie apart, and not above each other", field="--from and --at"
-        ) from error
+        raise InputError("must lie apart", field="--from and --at") from error
 
 
 def _draw(

@@ -10,7 +10,9 @@ Why an own small painter
 =========  ====================================================================================
 part       drawn as
 =========  ====================================================================================
-balls      luminance (or irradiance/π) in the direction of the normal; the ring is the role
+balls      luminance (or irradiance/π) in the direction of the normal, smoothed as little as
+           leaves none negative: a series of nine numbers swings below 0 opposite to a lamp, and
+           its clipped swings look like black holes; the ring is the role
 cells      edges of the tetrahedra, fainter with distance, through surfaces very faint
 hull       its edges, and a veil that is thicker at the rim
 graph      lines between the middles of cells that share a face
@@ -24,7 +26,7 @@ Terms
 
 from andon.display.probe_pictures.legend import STRIP_PX
 from andon.display.probe_pictures.model import PARTS, Look, Part, ProbePicture
-from andon.display.probe_pictures.picture import around_view, probe_picture
+from andon.display.probe_pictures.picture import around_view, framed_points, probe_picture
 
 __all__ = [
     "PARTS",
@@ -33,5 +35,6 @@ __all__ = [
     "Part",
     "ProbePicture",
     "around_view",
+    "framed_points",
     "probe_picture",
 ]

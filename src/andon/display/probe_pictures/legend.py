@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,6 @@ def legend(
     times = OVERSAMPLING
     image = Image.new("RGB", (width * times, STRIP_PX * times), PAPER)
     draw: Any = ImageDraw.Draw(image)
-    font: Any = ImageFont.load_default(size=14 * times)
     small: Any = ImageFont.load_default(size=12 * times)
     x = MARGIN_PX * times
     for colour, text in entries:
@@ -44,13 +44,41 @@ def legend(
             r, y = DOT_PX * times, 19 * times
             draw.ellipse((x, y - r, x + 2 * r, y + r), fill=colour, outline=INK, width=times // 2)
             x += 2 * r + 6 * times
-        draw.text((x, 19 * times), text, fill=INK, font=font, anchor="lm")
-        x += round(font.getlength(text)) + GAP_PX * times
-    draw.text((MARGIN_PX * times, 42 * times), note, fill=FAINT, font=small, anchor="lm")
+        x = _write(draw, (x, 19 * times), text, 14 * times, INK) + GAP_PX * times
+    _write(draw, (MARGIN_PX * times, 42 * times), note, 12 * times, FAINT)
     if scale is not None:
         _bar(draw, small, width * times, scale)
     small_image = image.resize((width, STRIP_PX), Image.Resampling.LANCZOS)
     return np.asarray(small_image, np.uint8)
+
+
+def _write(draw: Any, at: tuple[int, int], text: str, size: int, ink: tuple[int, int, int]) -> int:
+    """Writes from the left, centred on a height; where it ends. Pillow's font has no ² and no π."""
+    from PIL import ImageFont
+
+    font: Any = ImageFont.load_default(size=size)
+    raised: Any = ImageFont.load_default(size=0.65 * size)
+    x, y = at
+    for part in re.split("([²π])", text):
+        if part == "²":
+            draw.text((x, y - 0.28 * size), "2", fill=ink, font=raised, anchor="lm")
+            x += round(raised.getlength("2"))
+        elif part == "π":
+            _pi(draw, (x, y), size, ink)
+            x += round(0.62 * size)
+        else:
+            draw.text((x, y), part, fill=ink, font=font, anchor="lm")
+            x += round(font.getlength(part))
+    return x
+
+
+def _pi(draw: Any, at: tuple[int, int], size: int, ink: tuple[int, int, int]) -> None:
+    """A letter π of three strokes, as high as an x."""
+    x, y = at
+    top, foot, stroke = y - 0.14 * size, y + 0.36 * size, max(1, round(0.08 * size))
+    draw.line([(x + 0.04 * size, top), (x + 0.56 * size, top)], fill=ink, width=stroke)
+    for leg in (0.18, 0.42):
+        draw.line([(x + leg * size, top), (x + leg * size, foot)], fill=ink, width=stroke)
 
 
 def _bar(draw: Any, font: Any, width: int, scale: tuple[float, float]) -> None:

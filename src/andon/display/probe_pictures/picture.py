@@ -12,6 +12,7 @@ from andon.display.probe_pictures.canvas import Canvas, Colour
 from andon.display.probe_pictures.legend import STRIP_PX, Entry, legend, round_length
 from andon.display.probe_pictures.model import Look, ProbePicture
 from andon.display.probe_pictures.solids import (
+    RING,
     draw_balls,
     draw_geometry,
     draw_hull,
@@ -20,11 +21,12 @@ from andon.display.probe_pictures.solids import (
 from andon.display.reference import tone_curve
 from andon.errors import InputError
 from andon.files.volumes.model import ProbeRole, ProbeVolume, simplex_edges
+from andon.harmonics import deringed
 from andon.quantities import Geometry
 from andon.responses import SRGB, srgb_decode
 from andon.spaces import View, look_at, pinhole_view, transform_points
 
-__all__ = ["around_view", "probe_picture"]
+__all__ = ["around_view", "framed_points", "probe_picture"]
 
 Float = NDArray[np.float64]
 Code = tuple[int, int, int]
@@ -47,10 +49,13 @@ BALL_SHARE, BALL_MOST_SHARE = 0.2, 0.028
 # diffuse white is shown a little below the screen's.
 WHITE_PERCENTILE, WHITE_VALUE = 97.0, 0.9
 FOV_DEGREES = 32.0
+UP, BACK, PLAN = (0.0, 1.0, 0.0), (0.0, 0.0, -1.0), 1e-4
 SLANT = (0.30, 0.46, 1.0)
 # Share of the picture that a fitted view fills, in how many steps, and how near it may come.
 FILLED, FIT_STEPS, NEAREST_EYE_M = 0.88, 12, 0.5
 DEFAULT = Look()
+# A single ball stands in so many times its own size.
+LONELY = 4.0
 # Sample directions for the exposure: corners, edges and faces of a cube.
 _SIDES = np.array([d for d in product((-1.0, 0.0, 1.0), repeat=3) if any(d)])
 SIDES = _SIDES / np.linalg.norm(_SIDES, axis=1, keepdims=True)
@@ -81,8 +86,22 @@ def around_view(
         back = np.array(SLANT) / np.linalg.norm(SLANT)
         eye, middle = _fitted(points, middle if target is None else target, back, focal, size)
         target = middle if target is None else target
-    pose = look_at(eye, middle if target is None else target)
-    return pinhole_view(width, height, focal, pose)
+    to = middle if target is None else target
+    forward = to - eye
+    # Straight up or down there is no upright: then what is at the back is at the top.
+    level = np.hypot(forward[0], forward[2]) > PLAN * np.linalg.norm(forward)
+    return pinhole_view(width, height, focal, look_at(eye, to, UP if level else BACK))
+
+
+def framed_points(volume: ProbeVolume, geometry: Geometry | None = None, /) -> Float:
+    """(n, 3) what a picture of a volume, and of the scene around it, has to have in it."""
+    places = volume.positions
+    reach = _radius(places) * (1 + RING) * (LONELY if len(places) == 1 else 1)
+    cube = reach * np.array(list(product((-1.0, 1.0), repeat=3)))
+    ends = (places[:, None] + cube).reshape(-1, 3)
+    if geometry is None or not len(geometry.triangles):
+        return ends
+    return np.concatenate([ends, geometry.positions])
 
 
 def _fitted(
@@ -124,8 +143,8 @@ def probe_picture(
     Parameters
     ----------
     view : a pinhole view, of the picture without its legend.
-    geometry : the scene around the probes, in plain shades; faces that show their back are left
-        out, so that rooms can be looked into.
+    geometry : the scene around the probes, in plain shades; walls between the eye and the probes
+        are left out, so that rooms can be looked into.
     state : of the volume; default: its first. A volume without states has white balls.
     caption : said first in the legend's second line.
     """
@@ -134,7 +153,7 @@ def probe_picture(
     top, bottom = (np.array(colour) for colour in BACKGROUND)
     canvas = Canvas(large, top + rows * (bottom - top))
     if geometry is not None and len(geometry.triangles):
-        draw_geometry(canvas, geometry)
+        draw_geometry(canvas, geometry, volume.positions)
     light, white = _exposed(volume, state, look)
     if volume.cells is not None and "hull" in look.parts:
         draw_hull(canvas, volume.positions, volume.cells.facets, _linear(HULL))
@@ -166,6 +185,8 @@ def _exposed(volume: ProbeVolume, state: str | None, look: Look) -> tuple[Float 
         known = ", ".join(volume.states)
         raise InputError(f"there is no state {name!r}", field="state", remedy=f"it has {known}")
     held = volume.states[name]
+    if (held[:, 0] >= 0).all():
+        held = deringed(held, "irradiance" if look.irradiance else "luminance")
     units = look.units_per_cd_m2
     if units is None:
         shown = [shown_light(one, SIDES, irradiance=look.irradiance).max(axis=-1) for one in held]
@@ -220,17 +241,18 @@ def _entries(volume: ProbeVolume, look: Look) -> list[Entry]:
     """What the first line of the legend says."""
     roles = sorted(set(volume.roles), key=list(ROLES).index)
     count = volume.count
-    entries: list[Entry] = [(None, f"{count} probe{'s' if count != 1 else ''}")]
+    entries: list[Entry] = [(None, _counted(count, "probe", "probes"))]
     if "balls" in look.parts:
         entries += [(ROLES[role], f"{volume.roles.count(role)} {role}") for role in roles]
     cells = volume.cells
     if cells is not None:
-        if "cells" in look.parts:
-            entries.append((CELL, f"{len(cells.corners)} tetrahedra"))
-        if "hull" in look.parts:
-            entries.append((HULL, f"hull of {len(cells.facets)} faces"))
+        if "cells" in look.parts and len(cells.corners):
+            entries.append((CELL, _counted(len(cells.corners), "tetrahedron", "tetrahedra")))
+        if "hull" in look.parts and count > 2:
+            entries.append((HULL, f"hull of {_counted(len(cells.facets), 'face', 'faces')}"))
         if "graph" in look.parts:
-            entries.append((GRAPH, f"{len(cells.adjacent)} neighbours"))
+            pairs = len(cells.adjacent)
+            entries.append((GRAPH, _counted(pairs, "pair of neighbours", "pairs of neighbours")))
     if "zones" in look.parts:
         entries += [
             (ZONES[index % len(ZONES)], zone.name)
@@ -240,11 +262,15 @@ def _entries(volume: ProbeVolume, look: Look) -> list[Entry]:
     return entries
 
 
+def _counted(count: int, one: str, many: str) -> str:
+    return f"{count} {one if count == 1 else many}"
+
+
 def _note(volume: ProbeVolume, white: float, look: Look, caption: str) -> str:
     parts = [caption] if caption else []
     if volume.states:
-        what = "irradiance/pi" if look.irradiance else "luminance that arrives"
-        unit = "cd/m2" if volume.photometry == "absolute" else "cd/m2, relative"
+        what = "irradiance/π" if look.irradiance else "luminance that arrives"
+        unit = "cd/m²" if volume.photometry == "absolute" else "cd/m², relative"
         parts.append(
             f"balls: {what} from where they face; white is {float(f'{white:.3g}'):g} {unit}"
         )

@@ -13,7 +13,7 @@ from andon.quantities import Geometry
 from andon.rays import Hits, RayScene, face_normals
 from andon.spaces import View, transform_points
 
-__all__ = ["draw_balls", "draw_geometry", "draw_hull", "shown_light"]
+__all__ = ["RING", "draw_balls", "draw_geometry", "draw_hull", "shown_light"]
 
 Float = NDArray[np.float64]
 
@@ -23,33 +23,62 @@ EVEN, HEADLIGHT, DIMNESS = 0.35, 0.65, 0.62
 HUE = 0.55
 # The hull's tint where it is seen straight on, and at its rim.
 HULL_ALPHA, HULL_RIM_ALPHA = 0.025, 0.14
+# Share of the probes that a surface must stand before to be left out, how many are asked at most,
+# and triangles at once.
+NEARLY_ALL, MOST_ASKED, CHUNK = 0.95, 256, 1 << 16
 # Width of the ring that tells a probe's role, of the ball's radius.
 RING = 0.16
 
 
-def draw_geometry(canvas: Canvas, geometry: Geometry, /) -> None:
-    """Surfaces that show their front to the eye: walls between it and the probes are left out."""
-    eye = canvas.view.position
-    corners = geometry.positions[geometry.triangles]
+def draw_geometry(canvas: Canvas, geometry: Geometry, probes: Float | None = None, /) -> None:
+    """Surfaces, but for those that stand between the eye and the probes (n, 3), as a doll's house.
+
+    A triangle is left out where its plane has the eye on one side and nearly all probes on the
+    other: near walls, ceilings from above. What shows its back is drawn where nothing shows its
+    front: far walls that are turned outwards. Without probes, only fronts are drawn.
+    """
+    corners = geometry.positions[geometry.triangles[:, 0]]
     normals = face_normals(geometry)
-    facing = np.einsum("ij,ij->i", normals, eye - corners[:, 0]) > 0
-    ids = geometry.material_ids
-    front = replace(
-        geometry,
-        triangles=geometry.triangles[facing],
-        material_ids=None if ids is None else ids[facing],
-    )
-    hits, seen, directions = _cast(canvas.view, front)
-    if not seen.any():
+    turned = np.einsum("ij,ij->i", normals, canvas.view.position - corners)
+    if probes is None:
+        _draw_faces(canvas, geometry, turned > 0)
         return
-    cosine = -np.einsum("ij,ij->i", directions[seen], normals[facing][hits.triangle[seen]])
-    base = _reflectance(front, hits.triangle[seen], hits.barycentric[seen])
+    towards = np.where(turned[:, None] < 0, -normals, normals)
+    kept = ~_between(corners, towards, probes)
+    _draw_faces(canvas, geometry, kept & (turned < 0))
+    _draw_faces(canvas, geometry, kept & (turned > 0))
+
+
+def _draw_faces(canvas: Canvas, geometry: Geometry, shown: NDArray[np.bool_]) -> None:
+    """The triangles that are `shown` (t,), over all that is there."""
+    if not shown.any():
+        return
+    ids = geometry.material_ids
+    some = replace(
+        geometry,
+        triangles=geometry.triangles[shown],
+        material_ids=None if ids is None else ids[shown],
+    )
+    hits, seen, directions = _cast(canvas.view, some)
+    normals = face_normals(some)[hits.triangle[seen]]
+    cosine = np.abs(np.einsum("ij,ij->i", directions[seen], normals))
+    base = _reflectance(some, hits.triangle[seen], hits.barycentric[seen])
     grey = base.mean(axis=1, keepdims=True)
     shade = DIMNESS * (EVEN + HEADLIGHT * cosine)[:, None] * (grey + HUE * (base - grey))
-    flat = canvas.colour.reshape(-1, 3)
-    flat[seen] = shade
+    canvas.colour.reshape(-1, 3)[seen] = shade
     along = directions @ canvas.view.world_from_camera[:3, 2]
     canvas.depth.ravel()[seen] = (hits.distance * along)[seen]
+
+
+def _between(corners: Float, normals: Float, probes: Float) -> NDArray[np.bool_]:
+    """(t,) whether nearly all probes lie behind the plane of a triangle."""
+    some = probes[:: max(1, -(-len(probes) // MOST_ASKED))]
+    behind = np.empty(len(corners), bool)
+    for first in range(0, len(corners), CHUNK):
+        part = slice(first, first + CHUNK)
+        plane = np.einsum("ij,ij->i", normals[part], corners[part])
+        behind[part] = (normals[part] @ some.T <= plane[:, None]).mean(axis=1) >= NEARLY_ALL
+    return behind
 
 
 def _cast(view: View, geometry: Geometry) -> tuple[Hits, NDArray[np.bool_], Float]:

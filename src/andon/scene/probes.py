@@ -91,7 +91,7 @@ class Placement(Table):
     kind: Literal["hand", "nodes", "vertices", "lattice", "random", "automatic"] = Field(
         default="hand",
         description="hand: [[probes.place]] alone; nodes: of a glTF file; vertices: of the "
-        "surface; lattice and random: in a box; automatic: pruned lattice.",
+        "surface; lattice and random: in a box; automatic: pruned lattice, not built yet.",
     )
     file: Reference | None = Field(
         default=None,
@@ -145,7 +145,7 @@ class Placement(Table):
     )
     error: Positive | None = Field(
         default=None,
-        description="Of automatic placement: largest relative irradiance error.",
+        description="Of automatic placement, not built yet: largest relative irradiance error.",
     )
 
     @model_validator(mode="after")

@@ -5,7 +5,19 @@ from dataclasses import dataclass
 
 import pytest
 
-__all__ = ["Outcome", "run_andon", "run_refused"]
+__all__ = ["PHOTOGRAPHED", "Outcome", "run_andon", "run_refused"]
+
+# A scene of the files that `worlds.write_relight_files` writes.
+PHOTOGRAPHED = """
+[rig.camera]
+fx = 57.6
+[capture]
+source = "photo.png"
+[surface]
+depth = "depth.npy"
+[ambient]
+illuminance_lux = 200.0
+"""
 
 
 @dataclass(frozen=True)

@@ -10,20 +10,12 @@ from andon.pipeline import Renderer
 from andon.scene import load_scene
 from worlds import block, write_glb, write_relight_files
 
-from .command import run_andon, run_refused
+from .command import PHOTOGRAPHED, run_andon, run_refused
 
-SCENE = """
+SCENE = f"""{PHOTOGRAPHED}
 [scene]
 duration_seconds = 0.6
 frames_per_second = 10
-[rig.camera]
-fx = 57.6
-[capture]
-source = "photo.png"
-[surface]
-depth = "depth.npy"
-[ambient]
-illuminance_lux = 200.0
 [[object]]
 mesh = "box.glb"
 [[object.key]]

@@ -6,7 +6,7 @@ import pytest
 from andon.files.pictures import read_picture
 from worlds import block, write_glb, write_relight_files
 
-from .command import run_andon, run_refused
+from .command import PHOTOGRAPHED, run_andon, run_refused
 
 VIRTUAL = """
 [scene]
@@ -29,16 +29,6 @@ name = "sky"
 kind = "sky"
 illuminance_lux = 1415.93
 {more}
-"""
-PHOTOGRAPHED = """
-[rig.camera]
-fx = 57.6
-[capture]
-source = "photo.png"
-[surface]
-depth = "depth.npy"
-[ambient]
-illuminance_lux = 200.0
 """
 PROBES = """
 [probes]

@@ -9,25 +9,15 @@ import pytest
 from andon.files.pictures import write_exr, write_png
 from worlds import block, write_glb, write_obj, write_relight_files
 
-from .command import run_andon, run_refused
+from .command import PHOTOGRAPHED, run_andon, run_refused
 
-SCENE = """
-[rig.camera]
-fx = 57.6
-[capture]
-source = "photo.png"
-[surface]
-depth = "depth.npy"
-[ambient]
-illuminance_lux = 200.0
-"""
 POINT = "kind=point,position=0,0,-1,intensity_cd=50"
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     write_relight_files(tmp_path)
-    (tmp_path / "scene.toml").write_text(SCENE)
+    (tmp_path / "scene.toml").write_text(PHOTOGRAPHED)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

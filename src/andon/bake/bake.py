@@ -26,7 +26,7 @@ from andon.harmonics import deringed
 from andon.scene import Scene
 from andon.scene.probes import Probes
 from andon.surface.objects import joined
-from andon.transport.probes.placement import Placed, Walls, zones_of
+from andon.transport.probes.placement import Placed, Walls, unlit_volume
 
 if TYPE_CHECKING:
     from andon.transport.probes.light import ProbeLight
@@ -100,8 +100,8 @@ class _Bake:
         self.journal = journal
         self.runner = Runner(journal, placed.names, progress)
         self.probes = _table(scene)
-        self.zones = zones_of(scene, placed.positions)
-        self.cells = _cells(placed, self.zones)
+        self.unlit = unlit_volume(scene, placed)
+        self.cells = _cells(placed, self.unlit.zones)
         self.setting = _setting(scene, placed)
         self.look = self._looking(self.probes.cube_size_px, engine)
         near = min(BOUNCE_SIZE, self.probes.cube_size_px)
@@ -214,7 +214,7 @@ class _Bake:
     def _places(self) -> str:
         """The name of what lookups between the probes depend on."""
         return digest(
-            self.placed.positions, self.placed.capture_positions, self.cells, self.zones,
+            self.placed.positions, self.placed.capture_positions, self.cells, self.unlit.zones,
             self.probes.visibility,
         )  # fmt: skip
 
@@ -255,7 +255,7 @@ class _Bake:
     def _volume(self, coefficients: Float, distances: Distances | None) -> ProbeVolume:
         from andon import __version__
 
-        placed, probes = self.placed, self.probes
+        probes = self.probes
         state = probes.state or DEFAULT_STATE
         notes = {
             "generator": f"Andon {__version__}",
@@ -266,17 +266,11 @@ class _Bake:
             "bounces": str(probes.bounces),
             **self._facts(state),
         }
-        return ProbeVolume(
-            positions=placed.positions,
-            capture_positions=placed.capture_positions,
-            names=placed.names,
-            roles=placed.roles,
-            ranges_m=placed.ranges_m,
+        return replace(
+            self.unlit,
             states={state: coefficients},
-            zones=self.zones,
             cells=self.cells,
             distances=distances,
-            photometry=self.scene.photometry,
             notes=notes,
         )
 

@@ -11,7 +11,7 @@ from andon.errors import InputError
 from andon.files.volumes import ProbeVolume, Zone, read_volume, rounded
 from andon.scene import Scene
 from andon.scene.probes import Probes
-from andon.transport.probes.placement import Placed, zones_of
+from andon.transport.probes.placement import Placed, unlit_volume
 from andon.transport.probes.states import with_state
 
 __all__ = ["check_states", "differences", "joined", "planned"]
@@ -20,16 +20,7 @@ __all__ = ["check_states", "differences", "joined", "planned"]
 def planned(scene: Scene, probes: Probes, placed: Placed, state: str, /) -> ProbeVolume:
     """The volume that a bake will write, without cells, and dark."""
     dark = np.zeros((placed.count, (probes.order + 1) ** 2, 3))
-    return ProbeVolume(
-        placed.positions,
-        placed.capture_positions,
-        placed.names,
-        placed.roles,
-        placed.ranges_m,
-        {state: dark},
-        zones_of(scene, placed.positions),
-        photometry=scene.photometry,
-    )
+    return replace(unlit_volume(scene, placed), states={state: dark})
 
 
 def check_states(path: Path, volume: ProbeVolume, /, *, replaces: bool) -> tuple[str, ...]:

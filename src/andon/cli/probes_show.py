@@ -140,25 +140,16 @@ def _subject(file: Path) -> _Subject:
 
 def _unlit(scene: Scene, geometry: Geometry) -> ProbeVolume:
     """The volume that a bake of the scene would fill."""
-    from andon.files.volumes import ProbeVolume
+    from dataclasses import replace
+
     from andon.transport.probes.cells import build_cells
-    from andon.transport.probes.placement import place_probes, zones_of
+    from andon.transport.probes.placement import place_probes, unlit_volume
 
     placed = place_probes(scene, geometry)
     for warning in placed.warnings:
         note(printable(warning))
-    zones = zones_of(scene, placed.positions)
-    return ProbeVolume(
-        placed.positions,
-        placed.capture_positions,
-        placed.names,
-        placed.roles,
-        placed.ranges_m,
-        {},
-        zones,
-        build_cells(placed.positions, zones),
-        photometry=scene.photometry,
-    )
+    volume = unlit_volume(scene, placed)
+    return replace(volume, cells=build_cells(volume.positions, volume.zones))
 
 
 def _check_state(volume: ProbeVolume, state: str | None, file: Path) -> None:

@@ -31,6 +31,7 @@ Sources: Cook 1986 (dart throwing); Majercik et al. 2021 (backs seen, moved prob
 
 from andon.transport.probes.placement.model import Panorama, Placed, Tally
 from andon.transport.probes.placement.place import place_probes
+from andon.transport.probes.placement.unlit import unlit_volume
 from andon.transport.probes.placement.walls import Sight, Walls
 from andon.transport.probes.placement.written import locators, nearest_distances_m, place_tables
 from andon.transport.probes.placement.zones import zones_of
@@ -45,5 +46,6 @@ __all__ = [
     "nearest_distances_m",
     "place_probes",
     "place_tables",
+    "unlit_volume",
     "zones_of",
 ]

@@ -92,6 +92,37 @@ class Gaze(Table):
         default=0.6,
         description="Samples below this are dropped.",
     )
+    maximum_gap_degrees: Positive = Field(
+        default=3.0,
+        description="Samples whose two rays miss each other by more, seen from the eyes, are "
+        "dropped, degrees.",
+    )
+    hold_seconds: NonNegative = Field(
+        default=0.5,
+        description="Without a good sample the last fixation is held this long, then the surface "
+        "is looked at.",
+    )
+    chooses: Literal["layer", "distance"] = Field(
+        default="layer",
+        description="layer: a measured fixation chooses the surface or the background of the "
+        "glass, whichever is nearer in dioptres; distance: it is focused on as it is.",
+    )
+    hysteresis: Fraction = Field(
+        default=0.3,
+        description="Of the choice: share of the way between both layers that has to be crossed "
+        "beyond the middle.",
+    )
+    blur: Literal["optical", "gaussian", "paper", "off"] = Field(
+        default="optical",
+        description="Of the layers that are not looked at. optical: a uniform disc, as in a "
+        "defocused eye; gaussian: of the same second moment; paper: the paper's Gaussian on the "
+        "background; off: none.",
+    )
+    defocus: Literal["glass", "frame"] = Field(
+        default="glass",
+        description="What is out of focus. glass: the layers of glass, where a real eye does the "
+        "rest; frame: what is seen beside it too, by its depth.",
+    )
 
     @model_validator(mode="after")
     def _check_source(self) -> Gaze:

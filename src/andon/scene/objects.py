@@ -236,7 +236,9 @@ class Glass(Placed):
     )
     texture: Reference | None = Field(
         default=None,
-        description="Picture of what sticks to the surface.",
+        description="Picture of what sticks to the outside, diffuse. On a sphere latlong with its "
+        "middle at +z; on a slab and a lens seen from +z; on a mesh by its own coordinates. Where "
+        "its alpha is 0 nothing sticks.",
     )
     texture_transmittance: Fraction = Field(
         default=0.8,
@@ -249,6 +251,14 @@ class Glass(Placed):
     background: Background = Field(
         default=Background(),
         description="What is seen through it.",
+    )
+    highlight_exponent: Annotated[float, Field(ge=1, le=100000)] = Field(
+        default=2000.0,
+        description="Of Phong's lobe in which lamps are mirrored, 1…100000; its light is kept.",
+    )
+    casts_light: bool = Field(
+        default=True,
+        description="Of a sphere: shadow and caustic of point and spot lamps on other surfaces.",
     )
 
     @model_validator(mode="after")

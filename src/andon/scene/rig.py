@@ -76,7 +76,8 @@ class Rig(Table):
     )
     camera: Camera | None = Field(
         default=None,
-        description="The camera of a mono rig.",
+        description="The camera of a mono rig. Of a stereo rig: the point between both eyes, which "
+        "look in parallel, observer.interpupillary_mm apart; instead of left and right.",
     )
     left: Camera | None = Field(
         default=None,
@@ -93,11 +94,11 @@ class Rig(Table):
 
     @model_validator(mode="after")
     def _check_eyes(self) -> Rig:
-        wrong = {"mono": ("left", "right"), "stereo": ("camera",)}[self.kind]
-        for key in wrong:
-            if getattr(self, key) is not None:
-                raise refusal(f"a {self.kind} rig has no {key}", key=key, remedy="change rig.kind")
-        if self.kind == "stereo":
+        if self.kind == "mono" or self.camera is not None:
+            for key in ("left", "right"):
+                if getattr(self, key) is not None:
+                    raise _refused_eye(self.kind, key)
+        else:
             for key in ("left", "right"):
                 if getattr(self, key) is None:
                     raise refusal(
@@ -107,6 +108,19 @@ class Rig(Table):
 
     @property
     def cameras(self) -> tuple[tuple[str, Camera], ...]:
-        """(name of the view, camera): mono, or left and right; empty where none is stated."""
+        """(name of the view, camera): mono, or left and right; empty where none is stated.
+
+        Both eyes of a stereo rig that states one camera have it; `andon.engines.reading.view_of`
+        puts them apart.
+        """
+        if self.kind == "stereo" and self.camera is not None:
+            return (("left", self.camera), ("right", self.camera))
         named = (("mono", self.camera), ("left", self.left), ("right", self.right))
         return tuple((name, camera) for name, camera in named if camera is not None)
+
+
+def _refused_eye(kind: str, key: str) -> Exception:
+    if kind == "mono":
+        return refusal(f"a mono rig has no {key}", key=key, remedy="change rig.kind")
+    remedy = "state [rig.camera], or [rig.left] and [rig.right]"
+    return refusal(f"{key} and camera exclude each other", key=key, remedy=remedy)

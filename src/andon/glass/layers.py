@@ -1,0 +1,48 @@
+"""The three images that glass shows, before and after they are blurred."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Layers"]
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Layers:
+    """What one eye sees in glass, image by image, each with the blur that it has.
+
+    All are 0 where there is no glass, and where something nearer hides it. Luminances are of the
+    first glass that a pixel sees, in cd/m².
+
+    Attributes
+    ----------
+    coverage : (H, W) [0, 1], share of the pixel that is glass.
+    refracted : (H, W, 3) what comes through, Fresnel and absorption included.
+    surface : (H, W, 3) what sticks to the glass, times its α (premultiplied).
+    surface_alpha : (H, W) α = (1 − transmittance)·cover.
+    reflected : (H, W, 3) what is mirrored, Fresnel included; adds to both.
+    refracted_px, surface_px, reflected_px : (H, W) diameter of the blur disc in pixels, ≥ 0.
+    """
+
+    coverage: Float
+    refracted: Float
+    surface: Float
+    surface_alpha: Float
+    reflected: Float
+    refracted_px: Float
+    surface_px: Float
+    reflected_px: Float
+
+    def over(self, behind: Float, /) -> Float:
+        """(H, W, 3): the layers over what is seen beside them; C_o = α·C_s + (1 − α)·C_b.
+
+        `surface`, `refracted` and `reflected` are premultiplied by `coverage` here, as blurred
+        layers are, and as sharp ones are by being 0 outside.
+        """
+        through = self.surface + (1 - self.surface_alpha)[..., None] * self.refracted
+        return through + self.reflected + (1 - self.coverage)[..., None] * behind

@@ -1,0 +1,1 @@
+"""The observer: age, pupil, accommodation, and where the eyes look."""

@@ -36,7 +36,7 @@ SEED = 20211
 # Samples along each side of a pixel of the photographs.
 OVER = 4
 LABEL_PX = 2048
-QUALITY = 78
+QUALITY = 66
 
 
 def eyes(scene: dict[str, Any]) -> list[View]:

@@ -1,0 +1,36 @@
+// The solids of a scene; plan.py writes this for each scene. This is one ball with two interfaces.
+
+//!import andon/glass/rays.wgsl
+//!import andon/glass/ball.wgsl
+
+const SOLIDS: i32 = 1;
+// Boundaries on one path, at most.
+const EVENTS: i32 = 2;
+// One body that a ray leaves for good.
+const CONVEX_ALONE: bool = true;
+// Nothing is seen but through first boundaries.
+const ENTRY_ONLY: bool = false;
+// Total reflection can happen.
+const MIRRORS: bool = false;
+// Channels have different indices.
+const DISPERSES: bool = false;
+
+// Normals are interpolated: a triangle's own holds where they would send light to its wrong side.
+const FACETS: bool = false;
+// Metres between boundaries that are one.
+const NEAR: f32 = 3e-7;
+
+fn boundary(ray: Ray, inside: u32) -> Boundary {
+  var nearest = no_boundary();
+  {
+    let local = local_ray(ray, 0);
+    let hit = ball_hit(local.origin, local.direction, solids[0].size.x, (inside & 1u) != 0u);
+    nearest = nearer(nearest, hit, 0, NEAR);
+  }
+  return nearest;
+}
+
+// Texture coordinates of what sticks to a solid, −1 where nothing can.
+fn sticker_uv(solid: i32, point: vec3f, normal: vec3f, uv: vec2f) -> vec2f {
+  return ball_uv(local_point(point, 0), solids[0].size.x);
+}

@@ -24,7 +24,7 @@ def of_solids(gpu, solids, expressions, *columns, statements=""):
     buffer = uniform_buffer(gpu, STRUCTS["SolidRecord"].dtype.itemsize * 8, "solids")
     declared = "@group(0) @binding(1) var<uniform> solids: array<SolidRecord, 8>;"
     none = [(0, 0)] * len(solids)
-    write_buffer(gpu, buffer, pack_solids(solids, offsets=none, stickers=[(0, 0, 0, 0)] * len(solids)))
+    write_buffer(gpu, buffer, pack_solids(solids, offsets=none))
     results = []
     for expression in expressions:
         caller = Caller(

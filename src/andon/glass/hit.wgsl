@@ -12,6 +12,17 @@ struct Hit {
   facet: vec3f,
   // How the normal turns.
   curvature: Curvature,
-  // Of meshes: their texture coordinates.
-  uv: vec2f,
+  // Of meshes, the triangle; else −1.
+  triangle: i32,
 };
+
+// Where on a sticker's picture a point is, −1 where nothing can stick; and columns of what that
+// moves by for a step of one pixel.
+struct Sticking {
+  uv: vec2f,
+  steps: mat2x2f,
+};
+
+fn nothing_sticks() -> Sticking {
+  return Sticking(vec2f(-1.0), mat2x2f(0.0, 0.0, 0.0, 0.0));
+}

@@ -93,11 +93,13 @@ fn reflected_layer(ray: Ray, start: Pencil, path: Path, pixel_radians: f32) -> L
 
 // What sticks to the glass: reflectance times α, and α.
 fn stuck_on(ray: Ray, start: Pencil, first: Boundary, pixel_radians: f32) -> vec4f {
+  if !STICKERS {
+    return vec4f(0.0);
+  }
   let solid = max(first.solid, 0);
-  let point = ray.origin + first.distance * ray.direction;
-  let at = sticker_uv(solid, point, first.normal, first.uv);
   let on = transferred(start, first.distance, ray.direction, first.facet);
-  let steps = sticker_steps(solid, point, first, mat2x3f(on.place[2], on.place[3]) * pixel_radians);
-  let own = solids[solid].sticker_alpha;
-  return select(vec4f(0.0), sticker_at(solid, at, steps) * own, own > 0.0 && at.x >= 0.0);
+  let moves = mat2x3f(on.place[2], on.place[3]) * pixel_radians;
+  let at = sticking(first, ray.origin + first.distance * ray.direction, moves);
+  let stuck = sticker_at(solid, at.uv, at.steps) * solids[solid].sticker_alpha;
+  return select(vec4f(0.0), stuck, at.uv.x >= 0.0);
 }

@@ -50,16 +50,20 @@ fn lens_hit(origin: vec3f, direction: vec3f, shape: vec4f, inside: bool) -> Hit 
   if to_rim <= distance {
     let normal = vec3f(point.xy / shape.x, 0.0);
     let turning = cylindrical(1.0 / shape.x, vec3f(0.0, 0.0, 1.0));
-    return Hit(distance, normal, normal, turning, vec2f(0.0));
+    return Hit(distance, normal, normal, turning, -1);
   }
   let is_front = to_front <= distance;
   let bend = select(shape.z, shape.y, is_front);
   let normal = (point - vec3f(0.0, 0.0, select(back, front, is_front))) / bend;
-  return Hit(distance, normal, normal, spherical(1.0 / bend), vec2f(0.0));
+  return Hit(distance, normal, normal, spherical(1.0 / bend), -1);
 }
 
-// −1 on the rim.
-fn lens_uv(point: vec3f, shape: vec4f) -> vec2f {
-  let uv = vec2f(0.5 + 0.5 * point.x / shape.x, 0.5 - 0.5 * point.y / shape.x);
-  return select(vec2f(-1.0), uv, dot(point.xy, point.xy) < shape.x * shape.x * (1.0 - 1e-6));
+// On both caps.
+fn lens_sticking(point: vec3f, normal: vec3f, shape: vec4f, moves: mat2x3f) -> Sticking {
+  if normal.z == 0.0 {
+    return nothing_sticks();
+  }
+  let scale = vec2f(0.5, -0.5) / shape.x;
+  let uv = 0.5 + scale * point.xy;
+  return Sticking(uv, mat2x2f(scale * moves[0].xy, scale * moves[1].xy));
 }

@@ -29,7 +29,6 @@ struct Path {
   normal: vec3f,
   facet: vec3f,
   curvature: Curvature,
-  uv: vec2f,
   reflectance: f32,
   // Where the last boundary was left.
   exit: Ray,
@@ -114,8 +113,8 @@ fn trace(ray: Ray, start: Pencil, first: Boundary, channel: i32) -> Path {
     t.status = select(LOST, THROUGH, t.inside == 0u);
   }
   return Path(
-    first.solid, first.distance, point, first.normal, first.facet, first.curvature, first.uv,
-    reflectance, t.ray, t.pencil, select(t.transmitted, 0.0, t.status == LOST), exp(-t.extinction), t.status,
+    first.solid, first.distance, point, first.normal, first.facet, first.curvature, reflectance,
+    t.ray, t.pencil, select(t.transmitted, 0.0, t.status == LOST), exp(-t.extinction), t.status,
   );
 }
 

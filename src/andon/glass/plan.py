@@ -22,6 +22,7 @@ NEAR = 4e-6
 
 SOLIDS = "andon/glass/solids.wgsl"
 _CURVATURE = "andon/glass/curvature{}.wgsl"
+_OUTLINE = "andon/glass/silhouette{}.wgsl"
 _IMPORTS: dict[type, str] = {
     Ball: "andon/glass/ball.wgsl",
     Slab: "andon/glass/slab.wgsl",
@@ -35,11 +36,11 @@ _HITS: dict[type, str] = {
     Closed: "mesh_hit(local.origin, local.direction, solids[{0}].first_node, "
     "solids[{0}].first_triangle, {1})",
 }
-_UVS: dict[type, str] = {
-    Ball: "ball_uv(local_point(point, {0}), solids[{0}].size.x)",
-    Slab: "slab_uv(local_point(point, {0}), normal * world_from_glass({0}), solids[{0}].size.xyz)",
-    LensShape: "lens_uv(local_point(point, {0}), solids[{0}].size)",
-    Closed: "uv",
+_STICKINGS: dict[type, str] = {
+    Ball: "ball_sticking(local, solids[{0}].size.x, steps)",
+    Slab: "slab_sticking(local, met.normal * turn, solids[{0}].size.xyz, steps)",
+    LensShape: "lens_sticking(local, met.normal * turn, solids[{0}].size, steps)",
+    Closed: "mesh_sticking(local, solids[{0}].first_triangle + met.triangle, steps)",
 }
 
 
@@ -48,6 +49,8 @@ def variants_of(solids: Sequence[Solid], /) -> dict[str, str]:
     variants = {SOLIDS: _text(solids)}
     if all(isinstance(solid.shape, (Ball, Slab)) for solid in solids):
         variants[_CURVATURE.format("")] = _CURVATURE.format("_round")
+    if len(solids) == 1 and isinstance(solids[0].shape, Ball):
+        variants[_OUTLINE.format("")] = _OUTLINE.format("_ball")
     return variants
 
 
@@ -55,7 +58,7 @@ def _text(solids: Sequence[Solid]) -> str:
     used = {type(solid.shape) for solid in solids}
     imports = "".join(f"//!import {_IMPORTS[kind]}\n" for kind in _IMPORTS if kind in used)
     return f"//!import andon/glass/rays.wgsl\n{imports}{_constants(solids)}" + "".join(
-        [_boundary(solids), _sticker_uv(solids)]
+        [_boundary(solids), _sticking(solids)]
     )
 
 
@@ -67,6 +70,7 @@ def _constants(solids: Sequence[Solid]) -> str:
     # A ray that enters a ball alone leaves it at the same angle: reflection is never total.
     flags = {"CONVEX_ALONE": convex_alone, "ENTRY_ONLY": entry_only, "MIRRORS": not ball_alone}
     flags["DISPERSES"] = any(solid.is_dispersive for solid in solids)
+    flags["STICKERS"] = any(solid.sticker is not None for solid in solids)
     flags["FACETS"] = any(isinstance(solid.shape, Closed) for solid in solids)
     lines = [f"const SOLIDS: i32 = {len(solids)};", f"const EVENTS: i32 = {events};"]
     near = NEAR * max(_scale(solid.shape) for solid in solids)
@@ -96,9 +100,16 @@ def _boundary(solids: Sequence[Solid]) -> str:
     return "\n".join([*lines, "  return nearest;", "}", ""])
 
 
-def _sticker_uv(solids: Sequence[Solid]) -> str:
-    lines = ["fn sticker_uv(solid: i32, point: vec3f, normal: vec3f, uv: vec2f) -> vec2f {"]
+def _sticking(solids: Sequence[Solid]) -> str:
+    lines = ["fn sticking(met: Boundary, point: vec3f, moves: mat2x3f) -> Sticking {"]
     for row, solid in enumerate(solids):
-        value = _UVS[type(solid.shape)].format(row)
-        lines.append(f"  if solid == {row} {{ return {value}; }}")
-    return "\n".join([*lines, "  return vec2f(-1.0);", "}", ""])
+        if solid.sticker is not None:
+            lines += [
+                f"  if met.solid == {row} {{",
+                f"    let turn = world_from_glass({row});",
+                f"    let local = local_point(point, {row});",
+                "    let steps = mat2x3f(moves[0] * turn, moves[1] * turn);",
+                f"    return {_STICKINGS[type(solid.shape)].format(row)};",
+                "  }",
+            ]
+    return "\n".join([*lines, "  return nothing_sticks();", "}", ""])

@@ -15,14 +15,14 @@ struct Boundary {
   normal: vec3f,
   facet: vec3f,
   curvature: Curvature,
-  uv: vec2f,
+  triangle: i32,
   solid: i32,
   // All solids whose boundary this is: touching ones are crossed together, no air between them.
   crossed: u32,
 };
 
 fn no_boundary() -> Boundary {
-  return Boundary(NOWHERE, vec3f(0.0), vec3f(0.0), FLAT, vec2f(0.0), -1, 0u);
+  return Boundary(NOWHERE, vec3f(0.0), vec3f(0.0), FLAT, -1, -1, 0u);
 }
 
 fn world_from_glass(solid: i32) -> mat3x3f {
@@ -47,7 +47,7 @@ fn nearer(nearest: Boundary, hit: Hit, solid: i32, near: f32) -> Boundary {
   }
   let turn = world_from_glass(solid);
   return Boundary(
-    hit.distance, turn * hit.normal, turn * hit.facet, turned(turn, hit.curvature), hit.uv, solid,
+    hit.distance, turn * hit.normal, turn * hit.facet, turned(turn, hit.curvature), hit.triangle, solid,
     own | select(0u, nearest.crossed, nearest.distance <= hit.distance + near),
   );
 }

@@ -43,7 +43,6 @@ SOLID_RECORD = HostStruct(
         ("index", "vec4f"),  # red, green, blue
         ("absorption_per_m", "vec3f"),
         ("first_triangle", "i32"),
-        ("sticker", "vec4f"),  # in the atlas: column, row, width, height in texels
     ),
 )
 
@@ -55,6 +54,8 @@ GLASS_RECORD = HostStruct(
         ("largest_px", "f32"),
         ("units_per_cd_m2", "f32"),
         ("highlights", "u32"),
+        # 1: blur by how far away a layer appears, 0: by how far away its light comes from
+        ("apparent", "u32"),
     ),
 )
 
@@ -87,7 +88,6 @@ def pack_solids(
     /,
     *,
     offsets: Sequence[tuple[int, int]],
-    stickers: Sequence[tuple[int, int, int, int]],
 ) -> NDArray[Any]:
     """(MAX_SOLIDS,) `SOLID_RECORD`.
 
@@ -95,7 +95,6 @@ def pack_solids(
     ----------
     solids : at most MAX_SOLIDS, outermost first.
     offsets : of each solid: its first node and triangle (`andon.glass.bvh`); 0 for no mesh.
-    stickers : of each solid: column, row, width and height in the atlas; zeros for none.
     """
     table = np.zeros(MAX_SOLIDS, SOLID_RECORD.dtype)
     for row, solid in enumerate(solids):
@@ -111,7 +110,6 @@ def pack_solids(
             first_triangle=offsets[row][1],
             highlight_exponent=solid.highlight_exponent,
             sticker_alpha=alpha,
-            sticker=stickers[row],
             size=_size(solid.shape),
             index=(*solid.index, 1.0),
             absorption_per_m=solid.absorption_per_m,

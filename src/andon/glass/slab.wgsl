@@ -16,11 +16,15 @@ fn slab_hit(origin: vec3f, direction: vec3f, half: vec3f, inside: bool) -> Hit {
   let one = vec3<bool>(face.x, face.y && !face.x, face.z && !face.x && !face.y);
   let normal = select(vec3f(0.0), select(-sides, sides, inside), one);
   let met = inside || (first < last && first > 0.0);
-  return Hit(select(NOWHERE, distance, met), normal, normal, FLAT, vec2f(0.0));
+  return Hit(select(NOWHERE, distance, met), normal, normal, FLAT, -1);
 }
 
-// −1 but on the two faces across z.
-fn slab_uv(point: vec3f, normal: vec3f, half: vec3f) -> vec2f {
-  let uv = vec2f(0.5 + 0.5 * point.x / half.x, 0.5 - 0.5 * point.y / half.y);
-  return select(vec2f(-1.0), clamp(uv, vec2f(0.0), vec2f(1.0)), abs(normal.z) > 0.5);
+// On the two faces across z.
+fn slab_sticking(point: vec3f, normal: vec3f, half: vec3f, moves: mat2x3f) -> Sticking {
+  if abs(normal.z) < 0.5 {
+    return nothing_sticks();
+  }
+  let scale = vec2f(0.5, -0.5) / half.xy;
+  let uv = clamp(0.5 + scale * point.xy, vec2f(0.0), vec2f(1.0));
+  return Sticking(uv, mat2x2f(scale * moves[0].xy, scale * moves[1].xy));
 }

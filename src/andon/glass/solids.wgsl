@@ -14,6 +14,8 @@ const ENTRY_ONLY: bool = false;
 const MIRRORS: bool = false;
 // Channels have different indices.
 const DISPERSES: bool = false;
+// Something sticks to one of them.
+const STICKERS: bool = true;
 
 // Normals are interpolated: a triangle's own holds where they would send light to its wrong side.
 const FACETS: bool = false;
@@ -30,7 +32,9 @@ fn boundary(ray: Ray, inside: u32) -> Boundary {
   return nearest;
 }
 
-// Texture coordinates of what sticks to a solid, −1 where nothing can.
-fn sticker_uv(solid: i32, point: vec3f, normal: vec3f, uv: vec2f) -> vec2f {
-  return ball_uv(local_point(point, 0), solids[0].size.x);
+// `moves`: columns are what the point moves by for a step of one pixel.
+fn sticking(met: Boundary, point: vec3f, moves: mat2x3f) -> Sticking {
+  let turn = world_from_glass(0);
+  let steps = mat2x3f(moves[0] * turn, moves[1] * turn);
+  return ball_sticking(local_point(point, 0), solids[0].size.x, steps);
 }

@@ -110,6 +110,7 @@ def _landed(backdrop: Backdrop, exits: Float, ways: Float) -> tuple[Float, Float
     front = np.cross(backdrop.right_m, backdrop.up_m)
     with np.errstate(divide="ignore", invalid="ignore"):
         distance = ((backdrop.centre_m - exits) @ front) / (ways @ front)
+    distance[~np.isfinite(distance)] = -1.0  # along the plane: as one that goes away from it
     points = exits + distance[:, None] * ways
     missed = ~(distance > 0)
     for half in (backdrop.right_m, backdrop.up_m):

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import os
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.files.meshes import read_mesh
 from andon.glass.model import Backdrop, Ball, Closed, LensShape, Slab, Solid
 from andon.lamps.triangles import area_vectors
 from andon.quantities import Geometry
 from andon.spaces import View, look_at, pinhole_view
+from andon.verify.registry import NotShown
 from andon.verify.solids import lathe
 
 __all__ = [
@@ -21,6 +25,7 @@ __all__ = [
     "PUPIL_M",
     "PX_M",
     "body",
+    "drinking_glass",
     "eye_views",
     "goblet",
     "rays_of",
@@ -96,6 +101,23 @@ def goblet(segments: int = 160, rings: int = 24) -> Geometry:
     np.add.at(normals, solid.triangles, area_vectors(corners)[:, None])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     return Geometry(solid.positions, solid.triangles, normals)
+
+
+@cache
+def drinking_glass() -> tuple[Solid, ...]:
+    """The drinking glass of ``ANDON_DATA``, 0.2 m high, of 1,696 flat facets, closed.
+
+    Raises `NotShown` where there is none.
+    """
+    folder = os.environ.get("ANDON_DATA")
+    file = Path(folder or "") / "glass_and_lamp_ccby" / "glass" / "glass.obj"
+    if folder is None or not file.is_file():
+        raise NotShown("ANDON_DATA is not set: the folder that holds glass_and_lamp_ccby")
+    read = read_mesh(file).geometry
+    metres = read.positions / 100  # the file is in centimetres
+    middle = (metres.min(axis=0) + metres.max(axis=0)) / 2
+    shape = Closed(Geometry(metres - middle, read.triangles))
+    return (Solid("drinking glass", shape, index=INDEX, backdrop=BACKDROP),)
 
 
 def _smoothed(profile: Float, rings: int) -> Float:

@@ -51,6 +51,7 @@ def rows() -> tuple[Row, ...]:
         area_scene,
         areas,
         glass,
+        glass_blur,
         harmonics,
         lampshade,
         penumbra,
@@ -75,4 +76,5 @@ def rows() -> tuple[Row, ...]:
         *probe_light.ROWS,
         *probe_space.ROWS,
         *glass.ROWS,
+        *glass_blur.ROWS,
     )

@@ -12,7 +12,7 @@ from andon.glass.model import Solid
 from andon.glass.refraction import refracted
 from andon.pipeline import EngineName
 from andon.verify.glass_rays import refracted_on_gpu, seen_through
-from andon.verify.glass_setting import PX_M, body, eye_views, rays_of
+from andon.verify.glass_setting import PX_M, body, drinking_glass, eye_views, rays_of
 from andon.verify.registry import Row
 from andon.verify.truths.mitsuba_glass import GlassScene
 
@@ -58,9 +58,15 @@ def _frames(random: np.random.Generator, count: int) -> tuple[Float, Float]:
 
 
 @cache
+def solids_named(name: str) -> tuple[Solid, ...]:
+    """A body of `glass_setting`, or ``real``: the drinking glass of ANDON_DATA."""
+    return drinking_glass() if name == "real" else body(name)
+
+
+@cache
 def _truth(name: str, step: int) -> tuple[Float, Float, Float]:
     """Origins and directions (n, 3) of both eyes' rays that meet glass, and where they land."""
-    return landed_by_mitsuba(body(name), step)
+    return landed_by_mitsuba(solids_named(name), step)
 
 
 def landed_by_mitsuba(solids: Sequence[Solid], step: int) -> tuple[Float, Float, Float]:
@@ -80,7 +86,7 @@ def errors_px(engine: EngineName, name: str, step: int = STEP) -> Float:
     Infinite where it does not land.
     """
     origins, directions, points = _truth(name, step)
-    found = seen_through(engine, body(name), origins, directions)
+    found = seen_through(engine, solids_named(name), origins, directions)
     off = np.linalg.norm(found.points - points, axis=1) / PX_M
     return np.where(np.isfinite(off), off, np.inf)
 
@@ -138,7 +144,15 @@ def _rows(engine: EngineName) -> tuple[Row, ...]:
         partial(share_near, engine, "goblet"),
         at_least=True,
     )
-    return (snell, *_position_rows(engine), mesh)
+    real = Row(
+        f"glass.mesh.real.{engine}",
+        "glass",
+        None,
+        "share of pixels",
+        "Mitsuba's rays through the same mesh, within 2 px; a drinking glass of flat facets",
+        partial(share_near, engine, "real"),
+    )
+    return (snell, *_position_rows(engine), mesh, real)
 
 
 ROWS: tuple[Row, ...] = tuple(row for engine in ENGINES for row in _rows(engine))

@@ -101,7 +101,8 @@ def _scaled(scene: Scene, scale: float) -> Scene:
             remedy="leave it out",
         )
     cameras = {name: _scaled_camera(camera, name, scale) for name, camera in scene.rig.cameras}
-    names = {"camera" if name == "mono" else name: own for name, own in cameras.items()}
+    one = scene.rig.camera is not None
+    names = {"camera" if one else name: own for name, own in cameras.items()}
     return scene.model_copy(update={"rig": scene.rig.model_copy(update=names)})
 
 

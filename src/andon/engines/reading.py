@@ -98,12 +98,14 @@ def view_of(scene: Scene, name: str, shape: tuple[int, int] | None) -> View:
                 error.rule, file=scene.file, field=error.field, remedy=error.remedy
             ) from error
     else:
-        field = f"rig.{'camera' if name == 'mono' else name}.file"
+        field = f"rig.{'camera' if scene.rig.camera is not None else name}.file"
         size = None if shape is None else (shape[1], shape[0])
         view = read_camera(scene.path(camera.file, field), size=size)
         view = replace(view, name=name)
         if camera.has_pose:
             view = replace(view, world_from_camera=camera.pose())
+    if scene.rig.camera is not None and scene.rig.kind == "stereo":
+        view = replace(view, world_from_camera=_eye_pose(view, scene.observer.interpupillary_mm))
     undistort = scene.capture is None or scene.capture.undistort
     if view.distortion and not undistort:
         raise InputError(
@@ -113,6 +115,14 @@ def view_of(scene: Scene, name: str, shape: tuple[int, int] | None) -> View:
             remedy="leave it out: pictures are undistorted",
         )
     return view
+
+
+def _eye_pose(view: View, interpupillary_mm: float) -> NDArray[np.float64]:
+    """The pose of an eye beside the point between both eyes, which is the pose of `view`."""
+    side = {"left": -0.5, "right": 0.5}[view.name]
+    pose = view.world_from_camera.copy()
+    pose[:3, 3] += side * interpupillary_mm / 1000 * pose[:3, 0]
+    return pose
 
 
 def response_of(scene: Scene, picture: Picture | None) -> Response:

@@ -172,6 +172,16 @@ class Surface:
         """Pixels without geometry."""
         return int(self.valid.size - np.count_nonzero(self.valid))
 
+    @property
+    def distance_m(self) -> NDArray[np.float64]:
+        """(H, W) from the camera; in holes that of their cover, or inf."""
+        distance = np.linalg.norm(self.position - self.view.position, axis=-1)
+        known = self.valid & np.isfinite(distance)
+        if self.cover is None:
+            return np.where(known, distance, np.inf)
+        along = np.linalg.norm(self.view.rays_planar(), axis=-1)
+        return np.where(known, distance, np.where(self.valid, np.inf, self.cover * along))
+
 
 @dataclass(frozen=True)
 class Illuminance:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from andon.composite.model import Ambient
 from andon.lamps import Lamp, PointLamp, SphereLamp, intensity_cd
 from andon.quantities import CameraFrame, Surface
-from andon.spaces import View
 
 __all__ = [
     "Disc",
@@ -130,7 +129,7 @@ def draw_lamps(luminance: Float, surface: Surface, lamps: Sequence[Lamp], /) -> 
         return luminance
     origin, directions = view.rays_world()
     pixel_angle = np.sqrt(view.solid_angles())
-    distance = _distance(surface, view)
+    distance = surface.distance_m
     for disc in discs:
         reach = disc.position_m - origin
         away = float(np.linalg.norm(reach))
@@ -144,13 +143,3 @@ def draw_lamps(luminance: Float, surface: Surface, lamps: Sequence[Lamp], /) -> 
 def _angle_between(directions: Float, axis: Float) -> Float:
     """Angles (H, W), precise near 0 where arccos is not."""
     return 2 * np.arcsin(np.clip(np.linalg.norm(directions - axis, axis=-1) / 2, 0, 1))
-
-
-def _distance(surface: Surface, view: View) -> Float:
-    """(H, W) distance of the surface from the camera; in holes that of their cover, or inf."""
-    distance = np.linalg.norm(surface.position - view.position, axis=-1)
-    known = surface.valid & np.isfinite(distance)
-    if surface.cover is None:
-        return np.where(known, distance, np.inf)
-    along = np.linalg.norm(view.rays_planar(), axis=-1)
-    return np.where(known, distance, np.where(surface.valid, np.inf, surface.cover * along))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from andon.quantities import Geometry
 
 __all__ = [
+    "MAX_HIGHLIGHTS",
     "MAX_SOLIDS",
     "Backdrop",
     "Ball",
@@ -18,6 +19,7 @@ __all__ = [
     "Closed",
     "Focus",
     "GlassModel",
+    "Highlight",
     "LensShape",
     "Slab",
     "Solid",
@@ -27,6 +29,8 @@ __all__ = [
 Float = NDArray[np.float64]
 Blur = Literal["optical", "gaussian", "paper", "off"]
 
+# Rows of the table of mirrored lamps on the GPU: the brightest are kept.
+MAX_HIGHLIGHTS = 16
 # Bits of the mask of what a ray is inside of, and rows of the table on the GPU.
 MAX_SOLIDS = 8
 
@@ -140,6 +144,23 @@ class Solid:
     def is_dispersive(self) -> bool:
         """The channels have different indices."""
         return len(set(self.index)) > 1
+
+
+@dataclass(frozen=True)
+class Highlight:
+    """One lamp as one solid mirrors it.
+
+    Attributes
+    ----------
+    solid : which of the solids.
+    towards : (3,) position of the lamp in metres; where `distant`, unit direction towards it.
+    light : (3,) cd towards the solid; where `distant`, lx on a plane across.
+    """
+
+    solid: int
+    towards: Float
+    light: Float
+    distant: bool = False
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.quantities import Geometry
+from andon.spaces import transform_points
 
 __all__ = [
     "MAX_HIGHLIGHTS",
@@ -139,6 +140,24 @@ class Solid:
     backdrop: Backdrop = field(default_factory=Backdrop)
     highlight_exponent: float = 2000.0
     casts_light: bool = True
+
+    @property
+    def ball_around(self) -> tuple[Float, float]:
+        """Centre (3,), world, and radius in metres of a ball that holds the body."""
+        centre = np.zeros(3)
+        match self.shape:
+            case Ball(radius):
+                reach = radius
+            case Slab(half):
+                reach = float(np.linalg.norm(half))
+            case LensShape(rim, curvature, thickness):
+                # Caps rise over the rim, or sink below it, by less than the rim's radius.
+                high = max(abs(r) - np.sqrt(max(r * r - rim * rim, 0)) for r in curvature)
+                reach = float(np.hypot(rim, thickness / 2 + high))
+            case Closed(geometry):
+                low, high = geometry.positions.min(axis=0), geometry.positions.max(axis=0)
+                centre, reach = (low + high) / 2, float(np.linalg.norm(high - low) / 2)
+        return transform_points(self.world_from_glass, centre), reach
 
     @property
     def is_dispersive(self) -> bool:

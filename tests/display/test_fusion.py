@@ -82,7 +82,9 @@ def test_nothing_gets_brighter_than_the_photograph():
 def test_a_stated_exposure_is_the_brightest():
     light = room()
     stated = fused_codes(light, Exposure(units_per_cd_m2=0.01, tone="fusion"), SRGB, 3.0)
-    assert (stated == fused_codes(light * 0.01, FUSED, SRGB, 1.0)).all()
+    again = fused_codes(light * 0.01, FUSED, SRGB, 1.0)
+    assert np.abs(stated.astype(int) - again).max() <= 1
+    assert (stated != fused_codes(light, FUSED, SRGB, 1.0)).any()
 
 
 @pytest.mark.parametrize("size", [(1, 1), (1, 7), (5, 3)])
@@ -114,7 +116,10 @@ def test_the_gpu_fuses_the_same(gpu):
     encoder = gpu.device.create_command_encoder()
     stage.encode(encoder)
     gpu.device.queue.submit([encoder.finish()])
-    assert (stage.read().rgb == encode(light * 50.0, FUSED, SRGB, 50.0)).all()
+    # OpenCV's sums differ in the last bit from call to call.
+    difference = stage.read().rgb.astype(int) - encode(light * 50.0, FUSED, SRGB, 50.0)
+    assert np.abs(difference).max() <= 1
+    assert (difference != 0).mean() < 1e-3
 
 
 def test_a_frame_with_the_tone(engine, tmp_path):

@@ -14,7 +14,7 @@ HDR merge, tone curve   needs times and a response; a global curve flattens loca
 
 As a tone (`fused_codes`) it is given simulated photographs of one frame behind the neutral filters
 of 100, 50, 25, 12.5 and 6.25 % of the paper on gaze and glass. The brightest is the frame's own
-exposure: nothing gets lighter than a photograph shows it and night stays night, while up to 16 times
+exposure: nothing gets lighter than a photograph shows it, night stays night, and up to 16 times
 white is brought back. Identity is *not* kept, not even inside the range: every exposure keeps some
 weight everywhere, so all parts get darker, bright ones most.
 """

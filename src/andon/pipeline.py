@@ -33,6 +33,7 @@ from andon.scene import Scene
 from andon.spaces import View
 
 if TYPE_CHECKING:
+    from andon.display.model import Seen
     from andon.engines.prepared import Prepared
     from andon.lamps import Lamp
 
@@ -86,10 +87,11 @@ class Frame:
     surface : what is where; which pixels are holes or virtual objects.
     illuminance : ΔE that the lamps add, lx.
     luminance : what leaves towards the camera, cd/m².
-    image : 8-bit codes for the screen.
+    image : 8-bit codes for the screen; of an optical see-through display its own.
     report : engine, times, holes and what else is worth knowing.
     bodies : luminance of luminous bodies and visible lamps alone, cd/m²; None without any.
     glow : the same as the glow filters it; None without a glow.
+    seen : what the eye gets through an optical see-through display; None for a video one.
     """
 
     captured: CameraFrame
@@ -100,6 +102,7 @@ class Frame:
     report: Report
     bodies: Luminance | None = None
     glow: Luminance | None = None
+    seen: Seen | None = None
 
 
 class Renderer:
@@ -173,7 +176,10 @@ class Renderer:
         captured = self.prepared.frames[self._view_name(view)]
         bodies, filtered = self._engine.read_bodies(captured, handles[0], self._moment)
         report = self._report(captured, surface)
-        return Frame(captured, surface, illuminance, luminance, image, report, bodies, filtered)
+        seen = self._engine.read_seen(captured, *handles[2:])
+        return Frame(
+            captured, surface, illuminance, luminance, image, report, bodies, filtered, seen
+        )
 
     def picture(self, time_seconds: float = 0.0, view: str | None = None) -> NDArray[np.uint8]:
         """Draws one view and returns its 8-bit codes (H, W, 3) alone, which is faster."""

@@ -204,6 +204,9 @@ class Luminance:
 
 @dataclass(frozen=True)
 class DisplayImage:
-    """What a screen is sent: `rgb` (H, W, 3) uint8, encoded with the camera's response (VST)."""
+    """What a screen is sent: `rgb` (H, W, 3) uint8.
+
+    Encoded with the camera's response for video see-through; sRGB, black adds nothing, for optical.
+    """
 
     rgb: NDArray[np.uint8]

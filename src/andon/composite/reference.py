@@ -22,6 +22,7 @@ __all__ = [
     "lamp_luminance",
     "object_luminance",
     "relit_linear",
+    "unlit_linear",
 ]
 
 Float = NDArray[np.float64]
@@ -38,6 +39,11 @@ def relit_linear(frame: CameraFrame, ambient: Ambient, added_lux: Float, /) -> F
         return captured * np.maximum(dimming + added_lux / ambient.illuminance_lux, 0)
     dimmed = frame.response.decode(dimming * frame.response.encode(captured))
     return np.maximum(dimmed + captured * (added_lux / ambient.illuminance_lux), 0)
+
+
+def unlit_linear(frame: CameraFrame, ambient: Ambient, /) -> Float:
+    """Linear camera values (H, W, 3) in what dimming leaves of E0, without any lamp."""
+    return relit_linear(frame, ambient, np.zeros(3))
 
 
 def object_luminance(

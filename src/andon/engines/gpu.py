@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 from andon import gbuffer
 from andon.composite import stage as composite
+from andon.composite.reference import unlit_linear
+from andon.display.model import Seen
+from andon.display.ost_stage import OstStage
 from andon.display.stage import DisplayStage
 from andon.engines.changes import Changes, Rectangle
 from andon.engines.moment import Moment
@@ -59,9 +62,14 @@ class _View:
             alone = self.composite.lamps.alone
             self.glow = GlowStage(gpu, alone, self.luminance, prepared.glow, view)
             self.filtered = make_texture(gpu, alone.format, view.width, view.height, label="glow")
-        self.display = DisplayStage(
-            gpu, self.luminance, frame.response, prepared.exposure, frame.luminance_per_unit
-        )
+        self.display: DisplayStage | OstStage
+        if prepared.exposure.see_through is not None:
+            unlit = unlit_linear(frame, prepared.ambient)
+            self.display = OstStage(gpu, self.luminance, frame, prepared.exposure, unlit)
+        else:
+            self.display = DisplayStage(
+                gpu, self.luminance, frame.response, prepared.exposure, frame.luminance_per_unit
+            )
         own = {0: ("uint", seen.texture.view), 1: ("uniform", seen.view_buffer)}
         groups = [
             bind_group(gpu, own | self.composite.resources, "frame"),
@@ -184,11 +192,17 @@ class GpuEngine:
             view.glow.encode(self.encoder, view.composite.lamps.within)
         return luminance
 
-    def encode(self, frame: CameraFrame, luminance: Texture) -> DisplayStage:
+    def encode(self, frame: CameraFrame, luminance: Texture) -> DisplayStage | OstStage:
         """Records the display."""
         display = self._views[frame.view.name].display
         display.encode(self.encoder)
         return display
+
+    def read_seen(
+        self, frame: CameraFrame, luminance: Texture, image: DisplayStage | OstStage
+    ) -> Seen | None:
+        """What is seen through an optical see-through display; for figures, not for frames."""
+        return image.read_seen(self.prepared.photometry) if isinstance(image, OstStage) else None
 
     def finish(self) -> None:
         """Submits what was recorded and waits for it."""
@@ -198,7 +212,7 @@ class GpuEngine:
         self.gpu.wait()
 
     def read(
-        self, seen: GpuSurface, light: _View, luminance: Texture, image: DisplayStage
+        self, seen: GpuSurface, light: _View, luminance: Texture, image: DisplayStage | OstStage
     ) -> tuple[Surface, Illuminance, Luminance, DisplayImage]:
         """The quantities as arrays; draws the illuminance map, which no frame needs."""
         light.lux.encode(self.encoder, [light.lux_map.view])
@@ -212,7 +226,7 @@ class GpuEngine:
             surface.emitted_cd_m2[own] = alone[own]
         return surface, Illuminance(lux, word), self._cd_m2(luminance, light.frame), image.read()
 
-    def picture(self, image: DisplayStage) -> DisplayImage:
+    def picture(self, image: DisplayStage | OstStage) -> DisplayImage:
         """What `encode` gave, as an array."""
         return image.read()
 

@@ -50,7 +50,6 @@ LATER_KEYS = {
     "atmosphere": ("mist",),
     "observer": ("age", "pigment", "pupil_mm", "glasses"),
     "glare": ("renderer", "highlights", "halo", "needles", "adaptation"),
-    "display": ("peak_luminance_cd_m2", "transmittance"),
 }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite.model import Ambient
-from andon.display.model import Exposure
+from andon.display.model import Exposure, SeeThrough
 from andon.errors import InputError
 from andon.files.cameras import read_camera
 from andon.files.pictures import Picture, read_picture
@@ -206,14 +206,20 @@ def luminance_per_unit_of(scene: Scene, ambient: Ambient) -> float:
 def exposure_of(scene: Scene) -> Exposure:
     """Settings of the display."""
     display = scene.display
-    for key, bad in (("mode", "ost"), ("tone", "fusion"), ("dither", True)):
-        if getattr(display, key) == bad:
-            raise InputError(
-                f"{bad!r} is in the schema but not rendered yet",
-                file=scene.file,
-                field=f"display.{key}",
-            )
-    return Exposure(display.exposure, display.tone)  # type: ignore[arg-type]
+    if display.dither:
+        raise InputError(
+            "True is in the schema but not rendered yet", file=scene.file, field="display.dither"
+        )
+    through = None
+    if display.mode == "ost":
+        assert display.peak_luminance_cd_m2 is not None  # the schema asks for it
+        through = SeeThrough(
+            display.peak_luminance_cd_m2,
+            display.transmittance,
+            display.compensation,
+            scene.has_photograph,
+        )
+    return Exposure(display.exposure, display.tone, through)
 
 
 def glow_of(scene: Scene) -> Glow | None:

@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite import reference as composite
+from andon.display import ost
 from andon.display import reference as display
+from andon.display.model import Seen
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import lampless_pixels, lit_pixels
@@ -92,10 +94,27 @@ class ReferenceEngine:
 
     def encode(self, frame: CameraFrame, luminance: Luminance) -> DisplayImage:
         """8-bit codes for the screen."""
+        through, white = self.prepared.exposure.see_through, frame.luminance_per_unit
+        if through is not None:
+            cd_m2 = np.asarray(luminance.cd_m2, np.float64)
+            real, unlit = (
+                white * ost.real_light(light, through)
+                for light in (frame.linear, composite.unlit_linear(frame, self.prepared.ambient))
+            )
+            share = ost.shown_share(cd_m2, real, through, white, unlit)
+            return DisplayImage(ost.display_codes(share))
         codes = display.encode(
             luminance.cd_m2, self.prepared.exposure, frame.response, frame.luminance_per_unit
         )
         return DisplayImage(codes)
+
+    def read_seen(
+        self, frame: CameraFrame, luminance: Luminance, image: DisplayImage
+    ) -> Seen | None:
+        """What is seen through an optical see-through display."""
+        if self.prepared.exposure.see_through is None:
+            return None
+        return ost.seen_through(luminance, frame, self.prepared.exposure, image.rgb)
 
     def finish(self) -> None:
         """Nothing is pending."""

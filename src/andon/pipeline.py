@@ -2,8 +2,8 @@
 
 ::
 
-    capture ─CameraFrame▶ see ─Surface▶ illuminate ─Illuminance▶ compose ─Luminance▶ glow
-                                                      DisplayImage ◀─ encode ◀─Luminance─┘
+    capture ─CameraFrame▶ see ─Surface▶ illuminate ─Illuminance▶ compose ─Luminance▶ glass
+                                DisplayImage ◀─ encode ◀─Luminance─ glow ◀─Luminance─┘
 
 One frame, one or two views: what does not depend on the eye (geometry, lamps, shadow maps) is
 shared, the rest is done per view.
@@ -154,6 +154,9 @@ class Renderer:
         seen = clock.time("surface", lambda: engine.see(frame.view.name, moment))
         light = clock.time("direct", lambda: engine.illuminate(seen, moment))
         luminance = clock.time("composite", lambda: engine.compose(frame, seen, light, moment))
+        if prepared.glass is not None:
+            behind = luminance
+            luminance = clock.time("glass", lambda: engine.glass(frame, seen, behind, moment))
         if prepared.glow is not None:
             composed = luminance
             luminance = clock.time("glow", lambda: engine.glow(frame, seen, composed, moment))

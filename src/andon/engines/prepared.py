@@ -11,6 +11,7 @@ from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
 from andon.display.model import Exposure
 from andon.engines.checks import check_lamps
+from andon.engines.glass import SceneGlass, glass_of
 from andon.engines.moment import Moment
 from andon.engines.photographless import (
     ambient_without_photograph,
@@ -42,13 +43,13 @@ from andon.transport.direct.casters import MOVERS, OBJECTS, REAL, Casters
 __all__ = ["Prepared", "prepare"]
 
 # Tables and keys that the schema has and this version does not draw; a frame says so.
-LATER_TABLES = ("baked", "glass", "gaze")
+LATER_TABLES = ("baked",)
 
 LATER_KEYS = {
     "surface": ("response", "reflectance_map"),
-    "capture": ("clipped_luminance_cd_m2", "depth", "pose", "gaze", "noise"),
+    "capture": ("clipped_luminance_cd_m2", "depth", "pose", "noise"),
     "atmosphere": ("mist",),
-    "observer": ("age", "pigment", "pupil_mm", "glasses"),
+    "observer": ("pigment", "glasses"),
     "glare": ("renderer", "highlights", "halo", "needles", "adaptation"),
 }
 
@@ -76,6 +77,7 @@ class Prepared:
     ignored : tables of the scene that this version does not draw.
     sources : names of the known lamps of E0, which `lamps` has with positive and negative light.
     probes : light that virtual objects stand in instead of E0, or None.
+    glass : transparent bodies and what the eyes are focused on, or None.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -89,6 +91,7 @@ class Prepared:
     ignored: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
     probes: SceneProbes | None = None
+    glass: SceneGlass | None = None
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
@@ -100,6 +103,7 @@ class Prepared:
             self.bodies(time_seconds),
             movers,
             np.concatenate([self.surface.still_middles, moving.reshape(-1, 3)]),
+            None if self.glass is None else self.glass.focus(time_seconds),
         )
 
     def casters(self, moment: Moment) -> Casters:
@@ -146,6 +150,7 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         ignored=_ignored(scene),
         sources=tuple(table.name for table in scene.ambient.source) if scene.ambient else (),
         probes=probes,
+        glass=glass_of(scene, frames, surface, ambient, lamps, probes) if frames else None,
     )
 
 

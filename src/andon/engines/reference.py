@@ -82,6 +82,37 @@ class ReferenceEngine:
         )
         return Luminance(luminance, self.prepared.photometry)
 
+    def glass(
+        self, frame: CameraFrame, seen: Surface, luminance: Luminance, moment: Moment
+    ) -> Luminance:
+        """The picture with glass in it, blurred by where its layers are."""
+        own = self.prepared.glass
+        if own is None:
+            return luminance
+        cd_m2 = np.asarray(luminance.cd_m2, np.float64)
+        behind = SceneOfView(cd_m2, seen, frame.view, frame.luminance_per_unit, own.dimming)
+        lamps = own.highlights(moment.lamps)
+        layers, counts = glass.layers_of(
+            own.model, behind, moment.focus, lamps, lambda *at: own.standing_lux + self._lit(*at, moment)
+        )
+        self._layers = Layered(layers, counts)
+        beside = cd_m2
+        if own.model.defocus_frame and moment.focus is not None:
+            sizes = glass.frame_blur_px(own.model, behind, moment.focus)
+            beside = defocus.frame_blurred(cd_m2, sizes)
+        seen_layers = defocus.blurred(layers, own.model.blur)
+        return Luminance(seen_layers.over(beside), self.prepared.photometry)
+
+    def _lit(self, points: Float, normals: Float, moment: Moment) -> Float:
+        """(n, 3) lux of the lamps at `points` (n, 3) with unit `normals` (n, 3)."""
+        row = Surface.of_points(points, normals)
+        bias_m = np.full(row.view.shape, self.prepared.surface.bias.object_m)
+        return direct.illuminate(row, moment.lamps, self._rays, bias_m=bias_m)[0]
+
+    def read_glass(self, frame: CameraFrame, seen: Surface, moment: Moment) -> Layered | None:
+        """The layers of the glass, sharp, of the view that was drawn last."""
+        return None if self.prepared.glass is None else self._layers
+
     def glow(
         self, frame: CameraFrame, seen: Surface, luminance: Luminance, moment: Moment
     ) -> Luminance:

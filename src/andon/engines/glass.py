@@ -1,0 +1,196 @@
+"""Glass of a scene for both engines: bodies, mirrored lamps, and what the eyes are focused on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.composite.model import Ambient
+from andon.engines.gaze import SceneGaze, gaze_of
+from andon.engines.probes import SceneProbes
+from andon.errors import InputError
+from andon.glass.backdrops.environment import environment_of
+from andon.glass.focus import LayerVergences, layer_vergences
+from andon.glass.load import check_eye, solids_of
+from andon.glass.model import MAX_HIGHLIGHTS, Backdrop, Focus, GlassModel, Highlight, Solid
+from andon.lamps import AreaLamp, DirectionalLamp, HemisphereLamp, Lamp, SkyLamp
+from andon.observer.pupil import pupil_mm
+from andon.quantities import CameraFrame, photometric
+from andon.rays import RayScene
+from andon.scene import Scene
+from andon.surface.model import SurfaceModel
+from andon.transport.direct import reference as direct
+from andon.transport.direct.casters import OBJECTS, REAL, Casters, ShadowRays
+from andon.transport.probes.light import probe_coefficients
+
+__all__ = ["SceneGlass", "glass_of"]
+
+Float = NDArray[np.float64]
+
+# Pupil of relative scenes, which do not say how bright anything is: a lit room in the evening.
+PUPIL_MM = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class SceneGlass:
+    """Glass of a scene, ready for both engines.
+
+    Attributes
+    ----------
+    model : bodies and how they are blurred.
+    gaze : what the eyes are focused on over time; None: everything is sharp.
+    vergences : of the layers, for the point between the eyes; None where no ray gets through.
+    surface : geometry that lamps are hidden by, for what is mirrored.
+    dimming : (3,) of the light of the photograph.
+    """
+
+    model: GlassModel
+    gaze: SceneGaze | None
+    vergences: LayerVergences
+    surface: SurfaceModel
+    dimming: tuple[float, float, float]
+
+    @cached_property
+    def _rays(self) -> ShadowRays:
+        still = ((REAL, self.surface.occluder.geometry), (OBJECTS, self.surface.casters))
+        return ShadowRays(Casters(still))
+
+    def focus(self, time_seconds: float, /) -> Focus | None:
+        """What is in focus at a time; None: everything."""
+        return None if self.gaze is None else self.gaze.focus(time_seconds)
+
+    def highlights(self, lamps: Sequence[Lamp], /) -> tuple[Highlight, ...]:
+        """Lamps as the bodies mirror them, the brightest `MAX_HIGHLIGHTS`.
+
+        A lamp counts with the light that it sends to a body's middle; it is mirrored by all of the
+        body, or where something that stands still hides it from the middle, by none of it.
+        """
+        found = [
+            one
+            for (number, solid), lamp in product(enumerate(self.model.solids), lamps)
+            if (one := self._highlight(number, solid, lamp)) is not None
+        ]
+        found.sort(key=lambda one: -float(photometric(one.light)))
+        return tuple(found[:MAX_HIGHLIGHTS])
+
+    def _highlight(self, number: int, solid: Solid, lamp: Lamp) -> Highlight | None:
+        middle, _ = solid.ball_around
+        if isinstance(lamp, SkyLamp | HemisphereLamp):
+            return None  # all around, not a highlight
+        distant = isinstance(lamp, DirectionalLamp)
+        place = getattr(lamp, "position_m", None)
+        if place is None and not distant:
+            place = _middle_of_area(lamp)
+        reach = -lamp.direction if isinstance(lamp, DirectionalLamp) else place - middle
+        distance = float(np.linalg.norm(reach))
+        if distance == 0:
+            return None
+        across = (reach / distance)[None]
+        lux = direct.illuminance(lamp, middle[None], across)[0]
+        if isinstance(lamp, AreaLamp):
+            share = direct.visible_share(lamp, middle[None], across, middle[None], self._rays)[0]
+        else:
+            share = direct.visibility(lamp, middle[None], self._rays)[0]
+        light = lux * share * (1.0 if distant else distance**2)
+        if not np.all(light >= 0) or not light.any():
+            return None  # light that is taken away, or none
+        return Highlight(number, across[0] if distant else place, light, distant)
+
+
+def _middle_of_area(lamp: Lamp) -> Float:
+    """(3,) of a lamp that is made of points."""
+    for name in ("ends_m", "vertices_m", "positions_m", "corners_m"):
+        points = getattr(lamp, name, None)
+        if points is not None:
+            return np.asarray(points, float).reshape(-1, 3).mean(axis=0)
+    raise TypeError(type(lamp).__name__)
+
+
+def glass_of(
+    scene: Scene,
+    frames: Mapping[str, CameraFrame],
+    surface: SurfaceModel,
+    ambient: Ambient,
+    lamps: Sequence[Lamp],
+    probes: SceneProbes | None,
+    /,
+) -> SceneGlass | None:
+    """The glass of a scene, or None. Raises `InputError` for what does not fit."""
+    if not scene.glass:
+        return None
+    solids = solids_of(scene)
+    eyes = {name: frame.view.position for name, frame in frames.items()}
+    check_eye(solids, eyes)
+    white = next(iter(frames.values())).luminance_per_unit
+    left = np.asarray(ambient.dimming) * ambient.mean_lux
+    gaze = scene.gaze
+    model = GlassModel(
+        solids,
+        blur="off" if gaze is None else gaze.blur,
+        pupil_m=_pupil_mm(scene, frames) / 1000,
+        defocus_frame=gaze is not None and gaze.defocus == "frame",
+        environment=_environments(solids, left, lamps, probes),
+    )
+    middle = np.mean(list(eyes.values()), axis=0)
+    distances = _distances(solids[0].backdrop, middle, surface)
+    vergences = layer_vergences(solids, middle, distances)
+    looking = None if gaze is None else gaze_of(scene, gaze, model.blur, vergences)
+    return SceneGlass(model, looking, vergences, surface, ambient.dimming)
+
+
+def _pupil_mm(scene: Scene, frames: Mapping[str, CameraFrame]) -> float:
+    if scene.observer.pupil_mm is None and scene.photometry == "relative":
+        return PUPIL_MM
+    means = [
+        float(photometric(frame.linear.reshape(-1, 3).mean(axis=0))) * frame.luminance_per_unit
+        for frame in frames.values()
+    ]
+    return pupil_mm(scene.observer, float(np.mean(means)))
+
+
+def _environments(
+    solids: Sequence[Solid], ambient_lux: Float, lamps: Sequence[Lamp], probes: SceneProbes | None
+) -> Float:
+    """(n, 9, 3) what surrounds each body: what probes say of its middle, or E0 and skies."""
+    if probes is None:
+        return np.broadcast_to(environment_of(ambient_lux, lamps), (len(solids), 9, 3)).copy()
+    middles = np.array([solid.ball_around[0] for solid in solids])
+    found = np.zeros((len(solids), 9, 3))
+    rows = probe_coefficients(probes.dimmed, middles)[:, :9]
+    found[:, : rows.shape[1]] = rows
+    return found
+
+
+def _distances(
+    backdrop: Backdrop, eye: Float, surface: SurfaceModel
+) -> Callable[[Float, Float], Float]:
+    """Metres from points along directions to the backdrop, inf where it is missed."""
+    if backdrop.kind == "texture":
+        normal = np.cross(backdrop.right_m, backdrop.up_m)
+
+        def to_plane(origins: Float, directions: Float) -> Float:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                reach = ((backdrop.centre_m - origins) @ normal) / (directions @ normal)
+            return np.where(reach > 0, reach, np.inf)
+
+        return to_plane
+    if backdrop.kind == "frame":
+
+        def to_sphere(origins: Float, directions: Float) -> Float:
+            away = origins - eye
+            along = np.einsum("ni,ni->n", away, directions)
+            half = along**2 - np.einsum("ni,ni->n", away, away) + backdrop.distance_m**2
+            return np.where(half > 0, np.sqrt(np.maximum(half, 0)) - along, np.inf)
+
+        return to_sphere
+    # Thinned triangles: millimetres of backdrop are nothing to a vergence.
+    geometry = surface.shadow_casters
+    if not len(geometry.triangles):
+        return lambda origins, directions: np.full(len(origins), np.inf)
+    rays = RayScene(geometry)
+    return lambda origins, directions: rays.first_hits(origins, directions).distance

@@ -10,9 +10,9 @@ maximum   25.0 − 0.40·age     the best of them
 
 Hofstetter 1950. `mean` is the default, since a picture is made for an observer of a stated age and
 not for the worst of that age. The old data are of a letter that is pushed towards the eye until it
-blurs: the pupil narrows and blur is tolerated, so they are 1 to 3 D too much for those below 50
-(14.9 − 0.24·age of 5433 people, Khan et al. 2022), and the line ends at 61.7 years, where measured by
-instruments accommodation has long ended (Anderson et al. 2008) and people still read at about a
+blurs: the pupil narrows and blur is tolerated, so they are 1 to 3 D too much for those below 40
+(14.9 − 0.24·age of 5433 people, Khan et al. 2022). The line ends at 61.7 years, where accommodation
+as instruments measure it has long ended (Anderson et al. 2008) and people still read at about a
 metre, by depth of focus. The limit therefore ends at `LEAST_DIOPTRES`, half of that, and is never 0
 or less.
 

@@ -167,6 +167,23 @@ class Surface:
     body_id: NDArray[np.int32] | None = None
     cover: NDArray[np.float64] | None = None
 
+    @classmethod
+    def of_points(cls, position: NDArray[np.float64], normal: NDArray[np.float64], /) -> Surface:
+        """A row of points (n, 3) with unit normals (n, 3), as if a view saw them."""
+        count = len(position)
+        row, nothing = (1, count), np.zeros((1, count, 3))
+        return cls(
+            position[None],
+            normal[None],
+            np.ones(row),
+            np.ones(row, bool),
+            np.ones(row, bool),
+            nothing,
+            np.zeros(row, np.int32),
+            nothing,
+            View("latlong", count, 1),
+        )
+
     @property
     def holes(self) -> int:
         """Pixels without geometry."""

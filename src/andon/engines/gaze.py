@@ -102,9 +102,7 @@ class SceneGaze:
         )
 
 
-def gaze_of(
-    scene: Scene, table: Gaze, blur: Blur, vergences: LayerVergences, /
-) -> SceneGaze:
+def gaze_of(scene: Scene, table: Gaze, blur: Blur, vergences: LayerVergences, /) -> SceneGaze:
     """Where the observer of `scene` looks. Raises `InputError` for what cannot be read."""
     return SceneGaze(
         table,

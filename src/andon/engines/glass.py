@@ -47,6 +47,8 @@ class SceneGlass:
     vergences : of the layers, for the point between the eyes; None where no ray gets through.
     surface : geometry that lamps are hidden by, for what is mirrored.
     dimming : (3,) of the light of the photograph.
+    standing_lux : (3,) lx that stickers stand in beside the light of the lamps: what is left of
+        E0, or the mean of the probes around the first body.
     """
 
     model: GlassModel
@@ -54,6 +56,7 @@ class SceneGlass:
     vergences: LayerVergences
     surface: SurfaceModel
     dimming: tuple[float, float, float]
+    standing_lux: Float
 
     @cached_property
     def _rays(self) -> ShadowRays:
@@ -126,7 +129,6 @@ def glass_of(
     solids = solids_of(scene)
     eyes = {name: frame.view.position for name, frame in frames.items()}
     check_eye(solids, eyes)
-    white = next(iter(frames.values())).luminance_per_unit
     left = np.asarray(ambient.dimming) * ambient.mean_lux
     gaze = scene.gaze
     model = GlassModel(
@@ -140,7 +142,10 @@ def glass_of(
     distances = _distances(solids[0].backdrop, middle, surface)
     vergences = layer_vergences(solids, middle, distances)
     looking = None if gaze is None else gaze_of(scene, gaze, model.blur, vergences)
-    return SceneGlass(model, looking, vergences, surface, ambient.dimming)
+    # ∫ over a half space of a mean luminance L is π·L; L is L00·Y00.
+    mean = np.pi * model.environment[0, 0] * 0.5 / np.sqrt(np.pi)
+    standing = left if probes is None else mean
+    return SceneGlass(model, looking, vergences, surface, ambient.dimming, standing)
 
 
 def _pupil_mm(scene: Scene, frames: Mapping[str, CameraFrame]) -> float:

@@ -12,6 +12,10 @@ from andon.display.model import Seen
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import lampless_pixels, lit_pixels
+from andon.glass import reference as glass
+from andon.glass.backdrops.model import SceneOfView
+from andon.glass.defocus import reference as defocus
+from andon.glass.layers import Layered
 from andon.glow import reference as glow
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface import reference as surface
@@ -21,6 +25,9 @@ from andon.transport.direct.casters import ShadowRays
 __all__ = ["ReferenceEngine"]
 
 Float = NDArray[np.float64]
+
+# Of a row of points, which is as long as a view may be.
+MOST_POINTS = 65536
 
 
 class ReferenceEngine:
@@ -33,6 +40,7 @@ class ReferenceEngine:
         self.prepared = prepared
         self._surfaces: dict[str, Surface] = {}
         self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
+        self._layered: Layered | None = None
         self.maps_redrawn = 0
 
     def see(self, view_name: str, moment: Moment) -> Surface:
@@ -92,26 +100,33 @@ class ReferenceEngine:
         cd_m2 = np.asarray(luminance.cd_m2, np.float64)
         behind = SceneOfView(cd_m2, seen, frame.view, frame.luminance_per_unit, own.dimming)
         lamps = own.highlights(moment.lamps)
-        layers, counts = glass.layers_of(
-            own.model, behind, moment.focus, lamps, lambda *at: own.standing_lux + self._lit(*at, moment)
+        self._layered = glass.layers_of(
+            own.model,
+            behind,
+            moment.focus,
+            lamps,
+            lambda *at: own.standing_lux + self._lit(*at, moment),
         )
-        self._layers = Layered(layers, counts)
         beside = cd_m2
         if own.model.defocus_frame and moment.focus is not None:
             sizes = glass.frame_blur_px(own.model, behind, moment.focus)
             beside = defocus.frame_blurred(cd_m2, sizes)
-        seen_layers = defocus.blurred(layers, own.model.blur)
-        return Luminance(seen_layers.over(beside), self.prepared.photometry)
+        layers = defocus.blurred(self._layered.layers, own.model.blur)
+        return Luminance(layers.over(beside), self.prepared.photometry)
 
     def _lit(self, points: Float, normals: Float, moment: Moment) -> Float:
         """(n, 3) lux of the lamps at `points` (n, 3) with unit `normals` (n, 3)."""
-        row = Surface.of_points(points, normals)
-        bias_m = np.full(row.view.shape, self.prepared.surface.bias.object_m)
-        return direct.illuminate(row, moment.lamps, self._rays, bias_m=bias_m)[0]
+        lux = np.zeros_like(points)
+        for start in range(0, len(points), MOST_POINTS):
+            part = slice(start, start + MOST_POINTS)
+            row = Surface.of_points(points[part], normals[part])
+            bias_m = np.full(row.view.shape, self.prepared.surface.bias.object_m)
+            lux[part] = direct.illuminate(row, moment.lamps, self._rays, bias_m=bias_m)[0]
+        return lux
 
     def read_glass(self, frame: CameraFrame, seen: Surface, moment: Moment) -> Layered | None:
         """The layers of the glass, sharp, of the view that was drawn last."""
-        return None if self.prepared.glass is None else self._layers
+        return self._layered
 
     def glow(
         self, frame: CameraFrame, seen: Surface, luminance: Luminance, moment: Moment

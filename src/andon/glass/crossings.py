@@ -119,7 +119,7 @@ def _facts(
     chosen: Int,
     places: tuple[Int, Float],
 ) -> tuple[Float, Float, Float, Float, Float, Float]:
-    """Normal, facet, turning, uv, its slope and local point of the boundaries that were `chosen`."""
+    """Normal, facet, turning, uv, its slope and local point of the `chosen` boundaries."""
     o, d, t = rays
     count = len(o)
     normal, facet, own = np.zeros((3, count, 3))

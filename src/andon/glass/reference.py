@@ -12,13 +12,13 @@ from andon.glass.backdrops.model import Footprint, SceneOfView
 from andon.glass.backdrops.reference import environment_light, look, sticker_at
 from andon.glass.defocus.kernels import MAX_BLUR_PX
 from andon.glass.highlights import highlight_luminance
-from andon.glass.layers import Layers
+from andon.glass.layers import Counts, Layered, Layers
 from andon.glass.model import Focus, GlassModel, Highlight
 from andon.glass.paths import LOST, Traced, trace
 from andon.glass.pencils import blur_radians, vergence
 from andon.glass.refraction import against
 
-__all__ = ["Counts", "layers_of"]
+__all__ = ["frame_blur_px", "layers_of"]
 
 Float = NDArray[np.float64]
 # (points (n, 3), normals (n, 3)) → (n, 3) lux that arrives there, all light together.
@@ -28,26 +28,6 @@ Lit = Callable[[Float, Float], Float]
 MIDDLE = 1
 
 
-@dataclass(frozen=True)
-class Counts:
-    """Pixels of glass, and those of them whose light had to be made up.
-
-    Attributes
-    ----------
-    glass : pixels.
-    lost : rays that never left the glass; black.
-    missed : rays that hit no backdrop; the body's environment.
-    beside : rays whose backdrop is not in the frame; its nearest pixel.
-    clamped : images blurred by more than `MAX_BLUR_PX`.
-    """
-
-    glass: int
-    lost: int
-    missed: int
-    beside: int
-    clamped: int
-
-
 def layers_of(
     model: GlassModel,
     behind: SceneOfView,
@@ -55,7 +35,7 @@ def layers_of(
     highlights: Sequence[Highlight],
     lit: Lit,
     /,
-) -> tuple[Layers, Counts]:
+) -> Layered:
     """Surface, refracted and mirrored image of all glass in a view; sharp, with their blurs.
 
     Parameters
@@ -73,6 +53,16 @@ def layers_of(
     ahead = behind.surface.distance_m.reshape(-1)[pixels]
     kept = (traced.solid >= 0) & (traced.distance_m < ahead)
     return _Assembly(model, behind, focus, pixels[kept], rays[kept]).layers(highlights, lit)
+
+
+def frame_blur_px(model: GlassModel, behind: SceneOfView, focus: Focus, /) -> Float:
+    """(H, W) diameters in pixels of the blur of what is seen beside the glass, by its distance.
+
+    Holes are as far away as can be.
+    """
+    vergences = 1 / behind.surface.distance_m
+    wide = model.pupil_m * np.abs(vergences - focus.dioptres)
+    return np.minimum(wide / np.sqrt(behind.view.solid_angles()), MAX_BLUR_PX)
 
 
 def _may_hit(model: GlassModel, eye: Float, rays: Float) -> NDArray[np.bool_]:
@@ -118,7 +108,7 @@ class _Assembly:
     def _trace(self, channel: int) -> Traced:
         return trace(self.model.solids, self.eye[None], self.rays, channel=channel)
 
-    def layers(self, highlights: Sequence[Highlight], lit: Lit) -> tuple[Layers, Counts]:
+    def layers(self, highlights: Sequence[Highlight], lit: Lit) -> Layered:
         """All pixels; those without glass are 0."""
         refracted, through = self._refracted()
         reflected, away = self._reflected(highlights)
@@ -137,7 +127,8 @@ class _Assembly:
         cut = np.maximum(through.blur_px, away.blur_px) >= MAX_BLUR_PX
         lost = self.traced.status == LOST
         found = (lost, through.missed & ~lost, through.beside, cut)
-        return layers, Counts(len(self.pixels), *(int(np.count_nonzero(one)) for one in found))
+        counts = Counts(len(self.pixels), *(int(np.count_nonzero(one)) for one in found))
+        return Layered(layers, counts)
 
     def _picture(self, values: Float) -> Float:
         height, width = self.behind.view.shape

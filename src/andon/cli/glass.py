@@ -137,6 +137,7 @@ def _end(scene: Scene) -> float | None:
 
 
 def _still(scene: Scene, options: GlassOptions, names: tuple[str, ...]) -> None:
+    from andon.cli.glass_notes import glass_notes
     from andon.cli.without_photograph import refuse_photograph, white_text
     from andon.pipeline import Renderer
 
@@ -148,7 +149,7 @@ def _still(scene: Scene, options: GlassOptions, names: tuple[str, ...]) -> None:
         from andon.cli.glass_layers import write_layers
 
         write_layers(options.layers, frames, names)
-    for line in (*renderer.prepared.surface.notes, *glass_notes(frames[0])):
+    for line in (*renderer.prepared.surface.notes, *glass_notes(frames[0].report.glass)):
         note(line)
     pixels = frames[0].surface.valid.size
     white = white_text(scene, renderer.prepared)

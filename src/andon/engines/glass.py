@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 
@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from andon.composite.model import Ambient
 from andon.engines.gaze import SceneGaze, gaze_of
 from andon.engines.probes import SceneProbes
-from andon.errors import InputError
 from andon.glass.backdrops.environment import environment_of
-from andon.glass.focus import LayerVergences, layer_vergences
+from andon.glass.focus import Distances, LayerVergences, crossing_dioptres, layer_vergences
+from andon.glass.layers import Layered
 from andon.glass.load import check_eye, solids_of
-from andon.glass.model import MAX_HIGHLIGHTS, Backdrop, Focus, GlassModel, Highlight, Solid
+from andon.glass.model import MAX_HIGHLIGHTS, Backdrop, Ball, Focus, GlassModel, Highlight, Solid
+from andon.glass.report import GlassReport
 from andon.lamps import AreaLamp, DirectionalLamp, HemisphereLamp, Lamp, SkyLamp
 from andon.observer.pupil import pupil_mm
 from andon.quantities import CameraFrame, photometric
@@ -25,6 +26,7 @@ from andon.rays import RayScene
 from andon.scene import Scene
 from andon.surface.model import SurfaceModel
 from andon.transport.direct import reference as direct
+from andon.transport.direct.balls.model import GlassBall
 from andon.transport.direct.casters import OBJECTS, REAL, Casters, ShadowRays
 from andon.transport.probes.light import probe_coefficients
 
@@ -45,8 +47,10 @@ class SceneGlass:
     model : bodies and how they are blurred.
     gaze : what the eyes are focused on over time; None: everything is sharp.
     vergences : of the layers, for the point between the eyes; None where no ray gets through.
+    eyes : one or two positions (3,).
+    distances : to the first body's backdrop, see `andon.glass.focus`.
     surface : geometry that lamps are hidden by, for what is mirrored.
-    dimming : (3,) of the light of the photograph.
+    ambient : the light of the photograph.
     standing_lux : (3,) lx that stickers stand in beside the light of the lamps: what is left of
         E0, or the mean of the probes around the first body.
     """
@@ -54,14 +58,69 @@ class SceneGlass:
     model: GlassModel
     gaze: SceneGaze | None
     vergences: LayerVergences
+    eyes: tuple[Float, ...]
+    distances: Distances
     surface: SurfaceModel
-    dimming: tuple[float, float, float]
+    ambient: Ambient
     standing_lux: Float
+
+    @property
+    def dimming(self) -> tuple[float, float, float]:
+        """What is left of the light of the photograph."""
+        return self.ambient.dimming
+
+    @property
+    def balls(self) -> tuple[GlassBall, ...]:
+        """Bodies that bend the light of lamps."""
+        return tuple(
+            GlassBall(
+                solid.world_from_glass[:3, 3],
+                solid.shape.radius_m,
+                solid.index,
+                solid.absorption_per_m,
+            )
+            for solid in self.model.solids
+            if isinstance(solid.shape, Ball) and solid.casts_light
+        )
 
     @cached_property
     def _rays(self) -> ShadowRays:
         still = ((REAL, self.surface.occluder.geometry), (OBJECTS, self.surface.casters))
         return ShadowRays(Casters(still))
+
+    def report(self, layered: Layered, focus: Focus | None, /) -> GlassReport:
+        """What is worth knowing about a frame's glass."""
+        layers, is_glass = layered.layers, layered.layers.coverage > 0
+        first = self.model.solids[0]
+        blurs = {
+            name: float(np.median(getattr(layers, f"{name}_px")[is_glass]))
+            if is_glass.any()
+            else 0.0
+            for name in ("surface", "refracted", "reflected")
+        }
+        return GlassReport(
+            focus,
+            self.model.pupil_m * 1000,
+            self.vergences,
+            first.interfaces,
+            self._other_vergences,
+            self._crossing_dioptres,
+            layered.counts,
+            blurs,
+        )
+
+    @cached_property
+    def _other_vergences(self) -> LayerVergences:
+        first, *rest = self.model.solids
+        other = replace(first, interfaces=3 - first.interfaces)
+        middle = np.mean(self.eyes, axis=0)
+        return layer_vergences((other, *rest), middle, self.distances)
+
+    @cached_property
+    def _crossing_dioptres(self) -> float | None:
+        if len(self.eyes) < 2:
+            return None
+        return crossing_dioptres(self.model.solids, (self.eyes[0], self.eyes[1]), self.distances)
 
     def focus(self, time_seconds: float, /) -> Focus | None:
         """What is in focus at a time; None: everything."""
@@ -145,7 +204,8 @@ def glass_of(
     # ∫ over a half space of a mean luminance L is π·L; L is L00·Y00.
     mean = np.pi * model.environment[0, 0] * 0.5 / np.sqrt(np.pi)
     standing = left if probes is None else mean
-    return SceneGlass(model, looking, vergences, surface, ambient.dimming, standing)
+    both = tuple(eyes.values())
+    return SceneGlass(model, looking, vergences, both, distances, surface, ambient, standing)
 
 
 def _pupil_mm(scene: Scene, frames: Mapping[str, CameraFrame]) -> float:
@@ -171,9 +231,7 @@ def _environments(
     return found
 
 
-def _distances(
-    backdrop: Backdrop, eye: Float, surface: SurfaceModel
-) -> Callable[[Float, Float], Float]:
+def _distances(backdrop: Backdrop, eye: Float, surface: SurfaceModel) -> Distances:
     """Metres from points along directions to the backdrop, inf where it is missed."""
     if backdrop.kind == "texture":
         normal = np.cross(backdrop.right_m, backdrop.up_m)

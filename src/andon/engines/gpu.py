@@ -14,9 +14,11 @@ from andon.display.model import Seen
 from andon.display.ost_stage import OstStage
 from andon.display.stage import DisplayStage
 from andon.engines.changes import Changes, Rectangle
+from andon.engines.glass_gpu import GlassBuffers, GlassView
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import NO_LAMPS, PROBES, taking
+from andon.glass.layers import Layered
 from andon.glow.stage import GlowStage
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import open_gpu
@@ -57,6 +59,10 @@ class _View:
         )
         self.composite.load(frame)
         self.luminance = make_texture(gpu, "rgba16float", view.width, view.height, label="light")
+        self.glass: GlassView | None = None
+        if engine.glass is not None:
+            lit = self.composite.resources, engine.direct
+            self.glass = GlassView(gpu, engine.glass, frame, seen, self.luminance, lit)
         self.glow: GlowStage | None = None
         if prepared.glow is not None:
             alone = self.composite.lamps.alone
@@ -139,7 +145,12 @@ class GpuEngine:
             bias_real_m=bias.real_m,
             bias_object_m=bias.object_m,
             captured=frozenset() if probes is None else probes.captured,
+            balls=() if prepared.glass is None else prepared.glass.balls,
         )
+        self.glass: GlassBuffers | None = None
+        if prepared.glass is not None:
+            white = next(iter(prepared.frames.values())).luminance_per_unit
+            self.glass = GlassBuffers(self.gpu, prepared.glass, white)
         self.variants = self.direct.variants | self._receivers()
         self._views = {name: _View(self, frame) for name, frame in prepared.frames.items()}
         self._encoder: Any = None
@@ -182,6 +193,21 @@ class GpuEngine:
             self.encoder, light.luminance.view, seen, moment.lamps, frame.luminance_per_unit
         )
         return light.luminance
+
+    def glass_over(
+        self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, moment: Moment
+    ) -> Texture:
+        """Records the glass, blurred by where its layers are."""
+        view = self._views[frame.view.name]
+        if self.glass is not None and view.glass is not None:
+            self.glass.update(moment.lamps)
+            view.glass.encode(self.encoder, moment)
+        return luminance
+
+    def read_glass(self, frame: CameraFrame, seen: GpuSurface, moment: Moment) -> Layered | None:
+        """The layers of the glass, sharp; for figures, not for frames."""
+        view = self._views[frame.view.name]
+        return None if view.glass is None else view.glass.read()
 
     def glow(
         self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, moment: Moment

@@ -38,6 +38,7 @@ from andon.scene import Scene
 from andon.surface.load import load_surface
 from andon.surface.model import SurfaceModel
 from andon.surface.virtual import virtual_surface
+from andon.transport.direct.balls.model import GLASS
 from andon.transport.direct.casters import MOVERS, OBJECTS, REAL, Casters
 
 __all__ = ["Prepared", "prepare"]
@@ -201,7 +202,8 @@ def _virtual_groups(scene: Scene, surface: SurfaceModel) -> frozenset[str]:
     bodies = [body.name for body in resolve_bodies(scene, 0.0)]
     still = [OBJECTS] if len(surface.casters.triangles) else []
     moving = [MOVERS] if any(mover.casts_shadow for mover in surface.movers) else []
-    return frozenset([*bodies, *still, *moving])
+    glass = [GLASS] if any(table.shape == "sphere" for table in scene.glass) else []
+    return frozenset([*bodies, *still, *moving, *glass])
 
 
 def _ignored(scene: Scene) -> tuple[str, ...]:

@@ -40,6 +40,7 @@ class ReferenceEngine:
         self.prepared = prepared
         self._surfaces: dict[str, Surface] = {}
         self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
+        self._balls = () if prepared.glass is None else prepared.glass.balls
         self._layered: Layered | None = None
         self.maps_redrawn = 0
 
@@ -60,7 +61,14 @@ class ReferenceEngine:
         bias = self.prepared.surface.bias
         bias_m: NDArray[np.float64] = np.where(seen.is_object, bias.object_m, bias.real_m)
         names = [body.name for body in moment.bodies]
-        lux = direct.illuminate(seen, moment.lamps, self._rays, bias_m=bias_m, bodies=names)
+        lux = direct.illuminate(
+            seen,
+            moment.lamps,
+            self._rays,
+            bias_m=bias_m,
+            bodies=names,
+            balls=self._balls,
+        )
         return Illuminance(self._received(seen, lux, moment), self.prepared.photometry)
 
     def _received(self, seen: Surface, lux: Float, moment: Moment) -> Float:
@@ -90,7 +98,7 @@ class ReferenceEngine:
         )
         return Luminance(luminance, self.prepared.photometry)
 
-    def glass(
+    def glass_over(
         self, frame: CameraFrame, seen: Surface, luminance: Luminance, moment: Moment
     ) -> Luminance:
         """The picture with glass in it, blurred by where its layers are."""
@@ -121,7 +129,13 @@ class ReferenceEngine:
             part = slice(start, start + MOST_POINTS)
             row = Surface.of_points(points[part], normals[part])
             bias_m = np.full(row.view.shape, self.prepared.surface.bias.object_m)
-            lux[part] = direct.illuminate(row, moment.lamps, self._rays, bias_m=bias_m)[0]
+            lux[part] = direct.illuminate(
+                row, moment.lamps, self._rays, bias_m=bias_m, balls=self._balls
+            )[0]
+        probes = self.prepared.probes
+        for lamp in moment.lamps if probes is not None else ():
+            if lamp.name in probes.captured:
+                lux -= direct.illuminance(lamp, points, normals)
         return lux
 
     def read_glass(self, frame: CameraFrame, seen: Surface, moment: Moment) -> Layered | None:

@@ -13,7 +13,7 @@ from andon.glass.paths import Traced, trace
 from andon.glass.pencils import vergence
 from andon.spaces import perpendicular
 
-__all__ = ["LayerVergences", "crossing_dioptres", "focus_on", "layer_vergences"]
+__all__ = ["Distances", "LayerVergences", "crossing_dioptres", "focus_on", "layer_vergences"]
 
 Float = NDArray[np.float64]
 # (origins (n, 3), directions (n, 3)) → (n,) metres to the backdrop, inf where there is none.

@@ -15,6 +15,7 @@ from PIL import Image
 
 from andon.files import write_camera, write_exr, write_volume
 from andon.spaces import View
+from gaze_files import EYELINK, own_gaze
 from photometry_files import ies, ldt
 from volume_files import two_rooms
 
@@ -331,4 +332,6 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "photometry.ies": _write(ies(horizontals=(0, 90, 180)).encode()),
     "photometry.ldt": _write(ldt(symmetry=2).encode()),
     "volume.glb": _volume,
+    "gaze.csv": _write(own_gaze().encode()),
+    "gaze.eyelink": _write(EYELINK.encode()),
 }

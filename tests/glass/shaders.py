@@ -10,7 +10,6 @@ from direct.shader_functions import Caller
 __all__ = ["PATHS", "call", "of_solids"]
 
 PATHS = "andon/glass/paths.wgsl"
-ROWS = 4096
 
 
 def call(gpu, module, expression, *columns, statements=""):

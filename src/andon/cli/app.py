@@ -120,6 +120,29 @@ def demo(
 
 
 @app.command()
+def gaze(
+    recording: Annotated[Path, typer.Argument(help="CSV: Pupil Labs Core's, or docs/gaze.md's.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for pictures and tables.")],
+    filter: Annotated[
+        str | None, typer.Option(metavar="none|paper|one-euro", help="Default: the scene's.")
+    ] = None,
+    scene: Annotated[Path | None, typer.Option(help="Scene file whose [gaze] is used.")] = None,
+    rate_hz: Annotated[
+        float | None, typer.Option("--rate", help="Thin the recording to this rate first, Hz.")
+    ] = None,
+) -> None:
+    """Say where a recording of two eyes looks, how still and how late each filter makes it.
+
+    Writes depth and vergence over time (gaze.png), histogram.png, fixations.csv and report.json.
+
+    Example: `andon gaze gaze_positions.csv -o gaze`
+    """
+    from andon.cli.gaze import GazeOptions, run
+
+    run(GazeOptions(recording, out, filter, scene, rate_hz))
+
+
+@app.command()
 def doctor() -> None:
     """Say what this machine has, what is missing, and what would install it."""
     from andon.cli.doctor import run

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Layers"]
+__all__ = ["Counts", "Layered", "Layers"]
 
 Float = NDArray[np.float64]
 
@@ -46,3 +46,31 @@ class Layers:
         """
         through = self.surface + (1 - self.surface_alpha)[..., None] * self.refracted
         return through + self.reflected + (1 - self.coverage)[..., None] * behind
+
+
+@dataclass(frozen=True)
+class Counts:
+    """Pixels of glass, and those of them whose light had to be made up.
+
+    Attributes
+    ----------
+    glass : pixels.
+    lost : rays that never left the glass; black.
+    missed : rays that hit no backdrop; the body's environment.
+    beside : rays whose backdrop is not in the frame; its nearest pixel.
+    clamped : images that would be blurred by more than the largest disc.
+    """
+
+    glass: int
+    lost: int
+    missed: int
+    beside: int
+    clamped: int
+
+
+@dataclass(frozen=True)
+class Layered:
+    """What one eye saw in the glass of a frame: sharp `layers`, and `counts` of them."""
+
+    layers: Layers
+    counts: Counts

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from andon.glass.backdrops.atlas import Rectangle, make_atlas
@@ -81,8 +80,8 @@ class FrameLevels:
     def __init__(self, gpu: Gpu, frame: Texture) -> None:
         self.gpu, self._frame = gpu, frame
         levels = levels_of(frame.width, frame.height)
-        self._place = Rectangle(0, 0, frame.width, frame.height, levels)
-        width, height = self._place.extent
+        self.place = Rectangle(0, 0, frame.width, frame.height, levels)
+        width, height = self.place.extent
         self.texture = make_texture(gpu, FORMAT, width, height, label="frame levels")
         # A texture is not read and drawn into at once: the levels are drawn beside and copied.
         self._beside = make_texture(gpu, FORMAT, -(-width // 2), -(-height // 2), label="level")
@@ -99,15 +98,16 @@ class FrameLevels:
         ]
 
     def _corner(self, level: int) -> tuple[int, int]:
-        high = self._place.extent[1]
-        return (self._place.width, high - (2 * high >> level)) if level else (0, 0)
+        high = self.place.extent[1]
+        return (self.place.width, high - (2 * high >> level)) if level else (0, 0)
 
     def _size(self, level: int) -> tuple[int, int]:
-        return -(-self._place.width >> level), -(-self._place.height >> level)
+        return -(-self.place.width >> level), -(-self.place.height >> level)
 
     def _level_text(self, level: int) -> str:
-        (column, row), (width, height) = self._corner(level), self._size(level)
-        return f"const CORNER = vec2i({column}, {row});\nconst LAST = vec2i({width - 1}, {height - 1});\n"
+        corner, (width, height) = self._corner(level), self._size(level)
+        lines = f"CORNER = vec2i{corner}", f"LAST = vec2i({width - 1}, {height - 1})"
+        return "".join(f"const {line};\n" for line in lines)
 
     def encode(self, encoder: Any) -> None:
         """Records the copy of the frame, and its levels."""

@@ -47,7 +47,8 @@ def _fisheye(view: View, place: tuple[Float, ...], move: tuple[Float, ...]) -> t
 
 def _latlong(view: View, place: tuple[Float, ...], move: tuple[Float, ...]) -> tuple[Float, Float]:
     (x, y, z), (dx, dy, dz) = place, move
-    level = x * x + z * z
+    # At a pole every azimuth is as good.
+    level = np.maximum(x * x + z * z, 1e-20)
     azimuth = (z * dx - x * dz) / level
     fallen = (dy * level - y * (x * dx + z * dz)) / (np.sqrt(level) * (level + y * y))
     return azimuth * view.width / (2 * np.pi), fallen * view.height / np.pi

@@ -107,11 +107,11 @@ def backdrop_variants(solids: Sequence[Solid], projection: str, /) -> dict[str, 
     present = {solid.backdrop.kind for solid in solids}
     kinds = [kind for kind in KINDS if kind in present] or ["texture"]
     arguments = "solid, origin, direction, footprint"
-    calls = [f"{kind}_seen({arguments})" for kind in kinds]
-    lines = [f"  if (kind == {KINDS.index(k)}) {{ return {c}; }}" for k, c in zip(kinds, calls)]
-    body = [f"  return {calls[0]};"]
-    if len(kinds) > 1:
-        body = ["  let kind = backdrops[solid].kind;", *lines[1:], *body]
+    calls = {kind: f"return {kind}_seen({arguments});" for kind in kinds}
+    others = [f"  if (kind == {KINDS.index(kind)}) {{ {calls[kind]} }}" for kind in kinds[1:]]
+    body = (
+        ["  let kind = backdrops[solid].kind;"] * bool(others) + others + ["  " + calls[kinds[0]]]
+    )
     text = "\n".join(
         [
             *(f"//!import {_FOLDER}/{kind}.wgsl" for kind in kinds),

@@ -3,8 +3,8 @@
 import numpy as np
 
 from andon.glass.plan import variants_of
-from andon.glass.records import STRUCTS, pack_solids
-from andon.gpu.textures import uniform_buffer, write_buffer
+from andon.glass.records import STRUCTS
+from andon.glass.trace_stage import SolidBuffers
 from direct.shader_functions import Caller
 
 __all__ = ["PATHS", "call", "of_solids"]
@@ -20,10 +20,12 @@ def call(gpu, module, expression, *columns, statements=""):
 
 def of_solids(gpu, solids, expressions, *columns, statements=""):
     """For each of `expressions` an (n, 4), in a shader of these solids."""
-    buffer = uniform_buffer(gpu, STRUCTS["SolidRecord"].dtype.itemsize * 8, "solids")
-    declared = "@group(0) @binding(1) var<uniform> solids: array<SolidRecord, 8>;"
-    none = [(0, 0)] * len(solids)
-    write_buffer(gpu, buffer, pack_solids(solids, offsets=none))
+    shared = SolidBuffers(gpu, solids)
+    declared = """
+@group(0) @binding(2) var<uniform> solids: array<SolidRecord, 8>;
+@group(0) @binding(5) var nodes: texture_2d<f32>;
+@group(0) @binding(6) var triangles: texture_2d<f32>;
+"""
     results = []
     for expression in expressions:
         caller = Caller(
@@ -34,7 +36,7 @@ def of_solids(gpu, solids, expressions, *columns, statements=""):
             len(columns[0]),
             statements=statements,
             declarations=declared,
-            resources={1: ("uniform", buffer)},
+            resources=shared.resources,
             structs=STRUCTS,
             variants=variants_of(solids),
         )

@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from andon.glass import paths, pencils, refraction, shapes
-from andon.glass.model import Ball, LensShape, Slab, Solid
+from andon.glass.bvh import hierarchy
+from andon.glass.model import Ball, Closed, LensShape, Slab, Solid
+from andon.quantities import Geometry
 from andon.spaces import look_at
 from comparison import assert_agree
 from glass.shaders import call, of_solids
+from worlds import ball, block
 
 pytestmark = pytest.mark.usefixtures("gpu")
 
@@ -21,6 +24,39 @@ SHAPES = {
     "slab": Slab(np.array([0.06, 0.04, 0.01])),
     "lens": LENS,
     "hollow lens": LensShape(0.04, (-0.1, -0.08), 0.004),
+}
+
+
+def ring(radius, thickness, around=48, across=24):
+    """A torus around y, with its own normals."""
+    u, v = np.meshgrid(np.arange(around), np.arange(across), indexing="ij")
+    a, b = 2 * np.pi * u / around, 2 * np.pi * v / across
+    out = np.stack([np.cos(a), 0 * a, np.sin(a)], axis=-1)
+    normals = np.cos(b)[..., None] * out + np.sin(b)[..., None] * [0, 1.0, 0]
+    corners = [
+        (((u + i) % around) * across + (v + j) % across).ravel()
+        for i, j in ((0, 0), (0, 1), (1, 1), (1, 0))
+    ]
+    triangles = np.concatenate(
+        [np.stack([corners[k] for k in (0, i, i + 1)], axis=1) for i in (1, 2)]
+    )
+    places = (radius * out + thickness * normals).reshape(-1, 3)
+    uvs = np.stack([u / around, v / across], axis=-1).reshape(-1, 2)
+    return Geometry(places, triangles.astype(np.int32), normals.reshape(-1, 3), uvs)
+
+
+def smooth_ball(radius, frequency=12):
+    solid = ball(radius, (0, 0, 0), frequency)
+    return replace(
+        solid, normals=solid.positions / np.linalg.norm(solid.positions, axis=1)[:, None]
+    )
+
+
+MESHES = {
+    "smooth ball": Closed(smooth_ball(0.075)),
+    "facets": Closed(ball(0.075, (0, 0, 0), 4)),
+    "block": Closed(block(np.array([0.12, 0.08, 0.02]), (0, 0, 0))),
+    "ring": Closed(ring(0.05, 0.02)),
 }
 
 
@@ -84,8 +120,8 @@ def pencil_columns(pencil):
 
 
 PENCIL = """
-  let p = Pencil(
-    mat4x3f(x[0].xyz, x[1].xyz, x[2].xyz, x[3].xyz), mat4x3f(x[4].xyz, x[5].xyz, x[6].xyz, x[7].xyz));
+  let place = mat4x3f(x[0].xyz, x[1].xyz, x[2].xyz, x[3].xyz);
+  let p = Pencil(place, mat4x3f(x[4].xyz, x[5].xyz, x[6].xyz, x[7].xyz));
   let D = x[8].xyz; let N = x[9].xyz; let c1 = -dot(D, N);
   let C = mat3x3f(x[10].xyz, x[11].xyz, x[12].xyz);
   let bend_out = sqrt(1.0 - (1.0 - c1 * c1) / (1.51 * 1.51));
@@ -154,9 +190,9 @@ def test_vergence(gpu):
 
 
 @pytest.mark.parametrize("inside", [False, True], ids=["outside", "inside"])
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", [*SHAPES, *MESHES])
 def test_hits(gpu, name, inside):
-    shape = SHAPES[name]
+    shape = (SHAPES | MESHES)[name]
     if inside:
         generator = np.random.default_rng(5)
         origins = generator.uniform(-0.05, 0.05, (20000, 3))
@@ -236,6 +272,8 @@ SCENES = {
             look_at(np.array([0, 0, -0.1]), np.array([0, 0.1, 1.0])),
         ),
     ],
+    **{name: [placed(shape)] for name, shape in MESHES.items()},
+    "ball in a ring": [placed(Ball(0.02)), placed(MESHES["ring"])],
     "dispersing": [placed(SHAPES["slab"], index=(1.5, 1.52, 1.55))],
 }
 # Of all rays: those that pass so close to an edge that rounding sends them another way.
@@ -289,3 +327,23 @@ def test_paths(gpu, name, channel):
         size = np.linalg.norm(want, axis=(1, 2))
         error = np.linalg.norm(ours[what][kept].reshape(-1, 2, 2) - want, axis=(1, 2)) / size
         assert np.quantile(error, 1 - EDGES) < 1e-3, what
+
+
+# ── meshes ──────────────────────────────────────────────────────────────────────────────────────
+
+
+def test_boxes_hold_their_triangles():
+    """Each order visits every triangle once, within the boxes of all nodes above it."""
+    tree = hierarchy(MESHES["ring"].geometry)
+    corners = tree.triangles[:, :3, :3]
+    for nodes in tree.nodes:
+        skip, leaf = nodes[:, 0, 3].astype(int), nodes[:, 1, 3].astype(int)
+        seen = np.concatenate(
+            [np.arange(code // 8, code // 8 + code % 8) for code in leaf[leaf >= 0]]
+        )
+        np.testing.assert_array_equal(np.sort(seen), np.arange(len(corners)))
+        for node in range(0, len(nodes), 7):
+            below = leaf[node : skip[node]]
+            held = np.concatenate([np.arange(c // 8, c // 8 + c % 8) for c in below[below >= 0]])
+            assert (corners[held] >= nodes[node, 0, :3]).all()
+            assert (corners[held] <= nodes[node, 1, :3]).all()

@@ -12,6 +12,9 @@
 @group(0) @binding(2) var<uniform> solids: array<SolidRecord, 8>;
 @group(0) @binding(3) var<uniform> glass: GlassRecord;
 @group(0) @binding(4) var<uniform> highlights: array<HighlightRecord, 16>;
+// Boxes and triangles of meshes (bvh.py).
+@group(0) @binding(5) var nodes: texture_2d<f32>;
+@group(0) @binding(6) var triangles: texture_2d<f32>;
 
 struct Layers {
   // Light that comes through; a: blur.
@@ -59,7 +62,7 @@ fn sight(pixel: vec2f) -> Sight {
   let through = refracted_layer(at.ray, start, at.first, path, pixel_radians);
   let away = reflected_layer(at.ray, start, path, pixel_radians);
   let stuck = stuck_on(at.ray, start, at.first, pixel_radians);
-  let flags = select(0u, IS_LOST, path.status == LOST) | through.flags | away.flags;
+  let flags = select(0u, IS_LOST, path.status == LOST) | through.flags | (away.flags & IS_CUT);
   let near = blur_px(vec4f(1.0, 0.0, 0.0, 1.0) / path.distance, path.distance, pixel_radians);
   return Layers(
     vec4f(through.light * at.coverage, through.blur_px),

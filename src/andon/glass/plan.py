@@ -33,8 +33,7 @@ _HITS: dict[type, str] = {
     Ball: "ball_hit(local.origin, local.direction, solids[{0}].size.x, {1})",
     Slab: "slab_hit(local.origin, local.direction, solids[{0}].size.xyz, {1})",
     LensShape: "lens_hit(local.origin, local.direction, solids[{0}].size, {1})",
-    Closed: "mesh_hit(local.origin, local.direction, solids[{0}].first_node, "
-    "solids[{0}].first_triangle, {1})",
+    Closed: "mesh_hit(local.origin, local.direction, solids[{0}], {1})",
 }
 _STICKINGS: dict[type, str] = {
     Ball: "ball_sticking(local, solids[{0}].size.x, steps)",
@@ -100,10 +99,14 @@ def _boundary(solids: Sequence[Solid]) -> str:
     return "\n".join([*lines, "  return nearest;", "}", ""])
 
 
+def _has_place(solid: Solid) -> bool:
+    return not isinstance(solid.shape, Closed) or solid.shape.geometry.uvs is not None
+
+
 def _sticking(solids: Sequence[Solid]) -> str:
     lines = ["fn sticking(met: Boundary, point: vec3f, moves: mat2x3f) -> Sticking {"]
     for row, solid in enumerate(solids):
-        if solid.sticker is not None:
+        if solid.sticker is not None and _has_place(solid):
             lines += [
                 f"  if met.solid == {row} {{",
                 f"    let turn = world_from_glass({row});",

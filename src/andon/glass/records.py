@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.glass.bvh import Places
 from andon.glass.model import MAX_SOLIDS, Ball, Closed, LensShape, Slab, Solid
 from andon.gpu.layout import HostStruct
 
@@ -38,7 +39,8 @@ SOLID_RECORD = HostStruct(
         ("highlight_exponent", "f32"),
         ("centre", "vec3f"),
         ("sticker_alpha", "f32"),  # 1 − transmittance of the sticker; 0 without one
-        # ball: radius; slab: half width, height, thickness; lens: rim, front, back, thickness
+        # ball: radius; slab: half width, height, thickness; mesh: how many nodes;
+        # lens: rim, front, back, thickness
         ("size", "vec4f"),
         ("index", "vec4f"),  # red, green, blue
         ("absorption_per_m", "vec3f"),
@@ -71,7 +73,7 @@ HIGHLIGHT_RECORD = HostStruct(
 STRUCTS = {s.name: s for s in (SOLID_RECORD, GLASS_RECORD, HIGHLIGHT_RECORD)}
 
 
-def _size(shape: Ball | Slab | LensShape | Closed) -> Sequence[float]:
+def _size(shape: Ball | Slab | LensShape | Closed, nodes: int) -> Sequence[float]:
     match shape:
         case Ball(radius):
             return (radius, 0, 0, 0)
@@ -80,24 +82,26 @@ def _size(shape: Ball | Slab | LensShape | Closed) -> Sequence[float]:
         case LensShape(radius, (front, back), thickness):
             return (radius, front, back, thickness)
         case Closed():
-            return (0, 0, 0, 0)
+            return (nodes, 0, 0, 0)
 
 
 def pack_solids(
     solids: Sequence[Solid],
     /,
     *,
-    offsets: Sequence[tuple[int, int]],
+    meshes: Places,
 ) -> NDArray[Any]:
     """(MAX_SOLIDS,) `SOLID_RECORD`.
 
     Parameters
     ----------
     solids : at most MAX_SOLIDS, outermost first.
-    offsets : of each solid: its first node and triangle (`andon.glass.bvh`); 0 for no mesh.
+    meshes : of the solids that are `Closed`, in their order.
     """
     table = np.zeros(MAX_SOLIDS, SOLID_RECORD.dtype)
+    rows = iter(zip(meshes.first_node, meshes.node_count, meshes.first_triangle, strict=True))
     for row, solid in enumerate(solids):
+        node, nodes, triangle = next(rows) if isinstance(solid.shape, Closed) else (0, 0, 0)
         pose = solid.world_from_glass
         alpha = 0.0 if solid.sticker is None else 1 - solid.sticker.transmittance
         table[row] = SOLID_RECORD.pack(
@@ -106,11 +110,11 @@ def pack_solids(
             front=pose[:3, 2],
             centre=pose[:3, 3],
             interfaces=solid.interfaces,
-            first_node=offsets[row][0],
-            first_triangle=offsets[row][1],
+            first_node=node,
+            first_triangle=triangle,
             highlight_exponent=solid.highlight_exponent,
             sticker_alpha=alpha,
-            size=_size(solid.shape),
+            size=_size(solid.shape, nodes),
             index=(*solid.index, 1.0),
             absorption_per_m=solid.absorption_per_m,
         )[0]

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from andon import gbuffer
 from andon.glass.backdrops.records import STRUCTS as BACKDROP_STRUCTS
 from andon.glass.backdrops.records import backdrop_variants
-from andon.glass.model import MAX_SOLIDS, Solid
+from andon.glass.bvh import hierarchy, packed
+from andon.glass.model import MAX_SOLIDS, Closed, Solid
 from andon.glass.plan import variants_of
 from andon.glass.records import GLASS_RECORD, MAX_HIGHLIGHTS, STRUCTS, pack_highlights, pack_solids
 from andon.glass.screen import Rectangle, rectangle_of
@@ -32,6 +33,10 @@ class SolidBuffers:
 
     def __init__(self, gpu: Gpu, solids: Sequence[Solid]) -> None:
         self.gpu = gpu
+        shapes = [solid.shape for solid in solids]
+        self._places = packed([hierarchy(s.geometry) for s in shapes if isinstance(s, Closed)])
+        self._nodes = self._texture(self._places.nodes, "nodes")
+        self._triangles = self._texture(self._places.triangles, "triangles")
         self._solids = uniform_buffer(
             gpu, MAX_SOLIDS * STRUCTS["SolidRecord"].dtype.itemsize, "solids"
         )
@@ -41,11 +46,16 @@ class SolidBuffers:
         self.write_solids(solids)
         self.write_highlights(np.zeros((0, 4)), np.zeros((0, 3)))
 
+    def _texture(self, texels: NDArray[np.float32], label: str) -> Texture:
+        height, width = texels.shape[:2]
+        texture = make_texture(self.gpu, "rgba32float", width, height, label=label)
+        texture.write(texels)
+        return texture
+
     def write_solids(self, solids: Sequence[Solid]) -> None:
         """Other places, indices and absorptions of the same shapes."""
         self.solids = tuple(solids)
-        offsets = [(0, 0)] * len(solids)
-        write_buffer(self.gpu, self._solids, pack_solids(solids, offsets=offsets))
+        write_buffer(self.gpu, self._solids, pack_solids(solids, meshes=self._places))
 
     def write_highlights(self, places: NDArray[Any], lights: NDArray[Any]) -> None:
         """Lamps that glass mirrors, at most MAX_HIGHLIGHTS.
@@ -60,8 +70,13 @@ class SolidBuffers:
 
     @property
     def resources(self) -> dict[int, tuple[str, Any]]:
-        """Bindings 2, 4 and those of meshes, of group 0 of glass.wgsl."""
-        return {2: ("uniform", self._solids), 4: ("uniform", self._highlights)}
+        """Bindings 2, 4, 5 and 6 of group 0 of glass.wgsl."""
+        return {
+            2: ("uniform", self._solids),
+            4: ("uniform", self._highlights),
+            5: ("float", self._nodes.view),
+            6: ("float", self._triangles.view),
+        }
 
 
 class TraceStage:

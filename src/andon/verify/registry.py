@@ -50,6 +50,8 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        glass,
+        glass_blur,
         harmonics,
         lampshade,
         penumbra,
@@ -73,4 +75,6 @@ def rows() -> tuple[Row, ...]:
         *harmonics.ROWS,
         *probe_light.ROWS,
         *probe_space.ROWS,
+        *glass.ROWS,
+        *glass_blur.ROWS,
     )

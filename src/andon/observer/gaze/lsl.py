@@ -72,7 +72,7 @@ class LslGaze:
     ----------
     rejected : reason → samples that were no fixation, so far.
     connections, losses : streams taken up, and gone.
-    problem : why a stream that was found is not taken, or "".
+    problem : why a stream is not or no longer taken; "" while one is.
 
     Raises
     ------
@@ -146,9 +146,10 @@ class LslGaze:
                 continue
             try:
                 self._listen(info)
-            except (self._lsl.LostError, self._lsl.TimeoutError):
+            except RuntimeError as error:  # the base of pylsl's LostError and TimeoutError
                 gone.add(info.uid())
                 self.losses += 1
+                self.problem = f"stream {info.name()!r}: {error}"
 
     def _fitting(self, found: list[Any], gone: set[str]) -> Any | None:
         for info in sorted(found, key=lambda info: (info.name(), info.uid())):

@@ -24,7 +24,9 @@ WIDTH = 256
 # One pixel a ray: what it meets last, and the vergence of the plane behind.
 SHADER = """//!import andon/glass/paths.wgsl
 @group(0) @binding(0) var rows: texture_2d_array<f32>;
-@group(0) @binding(1) var<uniform> solids: array<SolidRecord, {count}>;
+@group(0) @binding(2) var<uniform> solids: array<SolidRecord, {count}>;
+@group(0) @binding(5) var nodes: texture_2d<f32>;
+@group(0) @binding(6) var triangles: texture_2d<f32>;
 fn path_of(at: vec2i) -> Path {{
   let ray = Ray(textureLoad(rows, at, 0, 0).xyz, textureLoad(rows, at, 1, 0).xyz);
   let frame = frame_of(ray.direction);
@@ -132,18 +134,15 @@ def _on_gpu(
     solids: Sequence[Solid], origins: Float, directions: Float
 ) -> tuple[Float, Float, NDArray[np.bool_], NDArray[np.bool_], Float]:
     from andon.glass.plan import variants_of
-    from andon.glass.records import STRUCTS, pack_solids
+    from andon.glass.records import STRUCTS
+    from andon.glass.trace_stage import SolidBuffers
     from andon.gpu.device import open_gpu
-    from andon.gpu.textures import uniform_buffer, write_buffer
 
-    gpu = open_gpu()
-    table = uniform_buffer(gpu, MAX_SOLIDS * STRUCTS["SolidRecord"].dtype.itemsize, "solids")
-    write_buffer(gpu, table, pack_solids(solids, offsets=[(0, 0)] * len(solids)))
+    buffers = SolidBuffers(open_gpu(), solids)
     options: dict[str, Any] = {"structs": STRUCTS, "variants": variants_of(solids)}
     entries = ("points", "ways", "vergences")
     shader = _shader(solids[0].backdrop)
-    resources = {1: ("uniform", table)}
-    point, way, seen = _drawn(shader, entries, resources, options, origins, directions)
+    point, way, seen = _drawn(shader, entries, buffers.resources, options, origins, directions)
     return point[:, :3], way[:, :3], point[:, 3] >= 0, way[:, 3] > 0, seen.reshape(-1, 2, 2)
 
 

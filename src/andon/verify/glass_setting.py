@@ -89,7 +89,7 @@ def _turned(degrees: float) -> Float:
 
 
 @cache
-def goblet(segments: int = 160, rings: int = 24) -> Geometry:
+def goblet(segments: int = 96, rings: int = 10) -> Geometry:
     """A drinking vessel of thick glass, turned: 0.14 m high, smooth normals, closed."""
     outer = [(0, 0), (32, 0), (33, 3), (12, 8), (7, 16), (7, 40), (14, 50), (32, 66), (40, 90)]
     inner = [(39, 126), (38, 140), (35, 140), (35.5, 126), (36, 90), (28, 69), (10, 60), (0, 58)]

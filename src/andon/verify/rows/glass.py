@@ -106,7 +106,7 @@ TRUTHS = {
     "slab": "180×120×30 mm, turned by 25°",
     "lens": "two caps of 0.12 and 0.2 m; Mitsuba's is a fine mesh of it",
     "nested": "a bubble in water in glass, off the axis",
-    "goblet": "a turned vessel of 130,000 triangles, smooth normals",
+    "goblet": "a turned vessel of 30,000 triangles, smooth normals",
 }
 
 

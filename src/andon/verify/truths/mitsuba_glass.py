@@ -86,7 +86,7 @@ class GlassScene:
     def __init__(self, solids: Sequence[Solid], backdrop: Backdrop | None = None) -> None:
         mi = mitsuba()
         self.backdrop = backdrop or solids[0].backdrop
-        self._limit = 1 if any(solid.interfaces == 1 for solid in solids) else MAX_EVENTS
+        self._entry_only = any(solid.interfaces == 1 for solid in solids)
         document: dict[str, Any] = {"type": "scene", "backdrop": rectangle(self.backdrop)}
         outside = 1.0
         for number, solid in enumerate(solids):
@@ -115,18 +115,19 @@ class GlassScene:
         """Where Mitsuba's `ray` ends on the backdrop (or NaN), how many interfaces, their share."""
         mi = mitsuba()
         share, events = 1.0, 0
-        while events <= MAX_EVENTS:
+        while True:
             hit = self.scene.ray_intersect(ray)
             if not hit.is_valid():
                 break
             if hit.shape.id() == "backdrop":
                 return (hit.p.x, hit.p.y, hit.p.z), events, share
-            if events < self._limit:
+            way = ray.d
+            if not (self._entry_only and events):
+                if events == MAX_EVENTS:
+                    break
                 way, passed = self._event(hit)
                 share *= passed
                 events += 1
-            else:
-                way = ray.d
             ray = mi.Ray3f(hit.p + STEP_M * way, way)
         return (np.nan, np.nan, np.nan), events, share
 

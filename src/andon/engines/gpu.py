@@ -131,6 +131,7 @@ class GpuEngine:
             bias_real_m=bias.real_m,
             bias_object_m=bias.object_m,
             captured=frozenset() if probes is None else probes.captured,
+            balls=prepared.balls,
         )
         self.variants = self.direct.variants | self._receivers()
         self._views = {name: _View(self, frame) for name, frame in prepared.frames.items()}

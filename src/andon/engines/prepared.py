@@ -37,6 +37,7 @@ from andon.scene import Scene
 from andon.surface.load import load_surface
 from andon.surface.model import SurfaceModel
 from andon.surface.virtual import virtual_surface
+from andon.transport.direct.balls import GlassBall
 from andon.transport.direct.casters import MOVERS, OBJECTS, REAL, Casters
 
 __all__ = ["Prepared", "prepare"]
@@ -74,6 +75,7 @@ class Prepared:
     exposure : settings of the display.
     glow : of luminous bodies, or None.
     photometry : the word that every number carries.
+    balls : of glass, in whose shadow and caustic surfaces stand.
     ignored : tables of the scene that this version does not draw.
     sources : names of the known lamps of E0, which `lamps` has with positive and negative light.
     probes : light that virtual objects stand in instead of E0, or None.
@@ -87,6 +89,7 @@ class Prepared:
     exposure: Exposure = field(default_factory=Exposure)
     glow: Glow | None = None
     photometry: Photometry = "absolute"
+    balls: tuple[GlassBall, ...] = ()
     ignored: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
     probes: SceneProbes | None = None

@@ -145,7 +145,7 @@ class GpuEngine:
             bias_real_m=bias.real_m,
             bias_object_m=bias.object_m,
             captured=frozenset() if probes is None else probes.captured,
-            balls=() if prepared.glass is None else prepared.glass.balls,
+            balls=prepared.balls,
         )
         self.glass: GlassBuffers | None = None
         if prepared.glass is not None:

@@ -38,7 +38,7 @@ from andon.scene import Scene
 from andon.surface.load import load_surface
 from andon.surface.model import SurfaceModel
 from andon.surface.virtual import virtual_surface
-from andon.transport.direct.balls.model import GLASS
+from andon.transport.direct.balls import GLASS, GlassBall
 from andon.transport.direct.casters import MOVERS, OBJECTS, REAL, Casters
 
 __all__ = ["Prepared", "prepare"]
@@ -93,6 +93,11 @@ class Prepared:
     sources: tuple[str, ...] = ()
     probes: SceneProbes | None = None
     glass: SceneGlass | None = None
+
+    @property
+    def balls(self) -> tuple[GlassBall, ...]:
+        """Glass in whose shadow and caustic surfaces stand."""
+        return () if self.glass is None else self.glass.balls
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""

@@ -40,7 +40,6 @@ class ReferenceEngine:
         self.prepared = prepared
         self._surfaces: dict[str, Surface] = {}
         self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
-        self._balls = () if prepared.glass is None else prepared.glass.balls
         self._layered: Layered | None = None
         self.maps_redrawn = 0
 
@@ -67,7 +66,7 @@ class ReferenceEngine:
             self._rays,
             bias_m=bias_m,
             bodies=names,
-            balls=self._balls,
+            balls=self.prepared.balls,
         )
         return Illuminance(self._received(seen, lux, moment), self.prepared.photometry)
 
@@ -130,7 +129,7 @@ class ReferenceEngine:
             row = Surface.of_points(points[part], normals[part])
             bias_m = np.full(row.view.shape, self.prepared.surface.bias.object_m)
             lux[part] = direct.illuminate(
-                row, moment.lamps, self._rays, bias_m=bias_m, balls=self._balls
+                row, moment.lamps, self._rays, bias_m=bias_m, balls=self.prepared.balls
             )[0]
         probes = self.prepared.probes
         for lamp in moment.lamps if probes is not None else ():

@@ -14,6 +14,7 @@ from andon.glass.defocus.kernels import MAX_BLUR_PX
 from andon.glass.highlights import highlight_luminance
 from andon.glass.layers import Counts, Layered, Layers
 from andon.glass.model import Focus, GlassModel, Highlight
+from andon.glass.outline import silhouette
 from andon.glass.paths import LOST, Traced, trace
 from andon.glass.pencils import blur_radians, vergence
 from andon.glass.refraction import against
@@ -47,12 +48,14 @@ def layers_of(
     """
     eye, directions = behind.view.rays_world()
     rays = directions.reshape(-1, 3)
-    pixels = np.flatnonzero(_may_hit(model, eye, rays))
-    rays = rays[pixels]
+    pixel_radians = np.sqrt(behind.view.solid_angles().reshape(-1))
+    pixels = np.flatnonzero(_may_hit(model, eye, rays, pixel_radians))
+    rays, coverage = silhouette(model.solids, eye, rays[pixels], pixel_radians[pixels])
     traced = trace(model.solids, eye[None], rays)
     ahead = behind.surface.distance_m.reshape(-1)[pixels]
-    kept = (traced.solid >= 0) & (traced.distance_m < ahead)
-    return _Assembly(model, behind, focus, pixels[kept], rays[kept]).layers(highlights, lit)
+    kept = (coverage > 0) & (traced.solid >= 0) & (traced.distance_m < ahead)
+    assembly = _Assembly(model, behind, focus, pixels[kept], rays[kept], coverage[kept])
+    return assembly.layers(highlights, lit)
 
 
 def frame_blur_px(model: GlassModel, behind: SceneOfView, focus: Focus, /) -> Float:
@@ -65,15 +68,16 @@ def frame_blur_px(model: GlassModel, behind: SceneOfView, focus: Focus, /) -> Fl
     return np.minimum(wide / np.sqrt(behind.view.solid_angles()), MAX_BLUR_PX)
 
 
-def _may_hit(model: GlassModel, eye: Float, rays: Float) -> NDArray[np.bool_]:
-    """(n,) rays that meet the ball around a body."""
+def _may_hit(model: GlassModel, eye: Float, rays: Float, pixel_radians: Float) -> NDArray[np.bool_]:
+    """(n,) rays that meet the ball around a body, or pass by it within a pixel."""
     found = np.zeros(len(rays), np.bool_)
     for solid in model.solids:
         middle, radius = solid.ball_around
         reach = middle - eye
         along = rays @ reach
         across = np.linalg.norm(reach - along[:, None] * rays, axis=-1)
-        found |= (across <= radius) & ((along > 0) | (np.linalg.norm(reach) <= radius))
+        wide = radius + np.abs(along) * pixel_radians
+        found |= (across <= wide) & ((along > 0) | (np.linalg.norm(reach) <= radius))
     return found
 
 
@@ -97,9 +101,10 @@ class _Assembly:
         focus: Focus | None,
         pixels: NDArray[np.int64],
         rays: Float,
+        coverage: Float,
     ) -> None:
         self.model, self.behind, self.focus = model, behind, focus
-        self.pixels, self.rays = pixels, rays
+        self.pixels, self.rays, self.coverage = pixels, rays, coverage
         self.eye = behind.view.position
         self.pixel_radians = np.sqrt(behind.view.solid_angles().reshape(-1)[pixels])
         self.traced = self._trace(MIDDLE)
@@ -114,12 +119,13 @@ class _Assembly:
         reflected, away = self._reflected(highlights)
         surface, alpha = self._surface(lit)
         near = self._blur_px(np.eye(2) / self.traced.distance_m[:, None, None])
+        share = self.coverage[:, None]
         layers = Layers(
-            self._picture(np.ones(len(self.pixels))),
-            self._picture(refracted),
-            self._picture(surface),
-            self._picture(alpha),
-            self._picture(reflected),
+            self._picture(self.coverage),
+            self._picture(share * refracted),
+            self._picture(share * surface),
+            self._picture(self.coverage * alpha),
+            self._picture(share * reflected),
             self._picture(through.blur_px),
             self._picture(near),
             self._picture(away.blur_px),

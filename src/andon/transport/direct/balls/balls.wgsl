@@ -95,7 +95,7 @@ fn refracted(lamp: i32, pair: i32, pairs: vec2i, at: BallPlace, line: Straight) 
   var light = found.xyz * (LIGHT_SCALE * facing * at.vergence * at.vergence * ball.at_centre);
   light *= emitted_share(lamp, leaving);
   for (var other = pairs.x; other < pairs.y; other++) {
-    if (other != pair) {
+    if (other != pair && balls[other].radius_m > 0.0) {
       let taken = meets(line.position, -arriving, other, ball.radius_m / at.vergence);
       // From a lamp with a place along the ray; parallel light: back from the ball's centre.
       let start = select(ball.centre, lamps[lamp].position, ball.lamp_distance_m > 0.0);
@@ -113,9 +113,11 @@ fn received(lamp: i32, line: Straight) -> vec3f {
   var straight = line.free * line.lit * line.relative;
   var bent = vec3f(0.0);
   for (var pair = pairs.x; pair < pairs.y; pair++) {
-    let at = ball_place(pair, line.position);
-    straight = select(0.0, straight, is_open(pair, at));
-    bent += refracted(lamp, pair, pairs, at, line);
+    if (balls[pair].radius_m > 0.0) {
+      let at = ball_place(pair, line.position);
+      straight = select(0.0, straight, is_open(pair, at));
+      bent += refracted(lamp, pair, pairs, at, line);
+    }
   }
   // What does not face the lamp has no place in its shadow map.
   let seen = select(1.0, line.seen, line.free > 0.0);

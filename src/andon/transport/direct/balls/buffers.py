@@ -79,6 +79,8 @@ class BallBuffers:
             records[row] = _record(lamp, ball)[0]
         write_buffer(self.gpu, self._records, records)
         for layer, (lamp, ball) in enumerate(pairs):
+            if ball.holds(lamp):
+                continue
             table = table_of(ball, lamp)
             if self._held.get(layer) is not table:
                 self._tables.write(_texels(table), layer)
@@ -129,6 +131,8 @@ def _pairs(lamps: Sequence[Lamp], balls: Sequence[GlassBall]) -> list[tuple[Lamp
 
 
 def _record(lamp: Lamp, ball: GlassBall) -> NDArray[Any]:
+    if ball.holds(lamp):
+        return BALL_RECORD.pack(radius_m=-1.0)
     distance = 0.0
     if not isinstance(lamp, DirectionalLamp):
         assert isinstance(lamp, PointLamp)

@@ -42,12 +42,16 @@ class GlassBall:
         return max(self.index) > 1 or max(self.absorption_per_m) > 0
 
     def lamp_vergence(self, lamp: Lamp, /) -> float:
-        """radius/distance of `lamp` from the centre: 0 from afar, 1 at the ball's surface."""
+        """radius/distance of `lamp` from the centre: 0 from afar, 1 at the surface, more inside."""
         if isinstance(lamp, DirectionalLamp):
             return 0.0
         assert isinstance(lamp, PointLamp)
         distance = float(np.linalg.norm(self.centre_m - lamp.position_m))
         return self.radius_m / max(distance, 1e-12)
+
+    def holds(self, lamp: Lamp, /) -> bool:
+        """`lamp` is inside: it shines as if the ball were not there."""
+        return self.lamp_vergence(lamp) >= 1
 
     def axis(self, lamp: Lamp, /) -> Float:
         """(3,) unit: from `lamp` to the centre."""
@@ -55,7 +59,7 @@ class GlassBall:
             return lamp.direction
         assert isinstance(lamp, PointLamp)
         reach = self.centre_m - lamp.position_m
-        return reach / np.linalg.norm(reach)
+        return reach / max(float(np.linalg.norm(reach)), 1e-12)
 
 
 def is_served(lamp: Lamp, /) -> bool:
@@ -66,7 +70,5 @@ def is_served(lamp: Lamp, /) -> bool:
 
 
 def served_balls(lamp: Lamp, balls: Sequence[GlassBall], /) -> list[GlassBall]:
-    """Which of `balls` bend the light of `lamp`: none around the lamp itself, none of air."""
-    if not is_served(lamp):
-        return []
-    return [x for x in balls if x.changes_light and x.lamp_vergence(lamp) < 1]
+    """Which of `balls` bend the light of `lamp`, wherever it is: none of air."""
+    return [x for x in balls if x.changes_light] if is_served(lamp) else []

@@ -13,7 +13,7 @@ BALL_RECORD = HostStruct(
     "BallRecord",
     (
         ("centre", "vec3f"),
-        ("radius_m", "f32"),
+        ("radius_m", "f32"),  # negative: the ball holds the lamp, and does nothing to its light
         ("axis", "vec3f"),  # unit, from the lamp
         ("lamp_vergence", "f32"),  # radius over distance of the lamp
         ("straight", "vec3f"),  # transmittance along the axis

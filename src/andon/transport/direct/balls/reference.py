@@ -55,8 +55,10 @@ def through_balls(
     beside = np.ones(len(position), bool)
     lux = np.zeros((len(position), 3))
     for ball in balls:
+        if ball.holds(lamp):
+            continue
         beside &= is_open(lamp, ball, position)
-        others = [x for x in balls if x is not ball]
+        others = [x for x in balls if x is not ball and not x.holds(lamp)]
         lux += refracted_lux(lamp, ball, position, normal, others=others)
     return beside, lux
 

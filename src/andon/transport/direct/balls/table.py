@@ -162,9 +162,9 @@ def _crossings(b: Float, lamp_vergence: float, index: float, edges: Float) -> li
     number = np.arange(len(b))
     offset = ROW_STEP * np.arange(rows)[:, None]
     peak = np.take_along_axis(angle, turn, axis=1)
-    rising: Float = np.where(number <= turn, angle, peak) + offset
+    rising = (np.where(number <= turn, angle, peak) + offset).astype(np.float64)
     rising_number = np.broadcast_to(np.minimum(number, turn), angle.shape)
-    falling: Float = np.where(number >= turn, angle, peak)[:, ::-1] + offset
+    falling = (np.where(number >= turn, angle, peak)[:, ::-1] + offset).astype(np.float64)
     falling_number = np.broadcast_to(np.maximum(number, turn)[:, ::-1], angle.shape)
 
     def numbers(wanted: Float, known: Float, values: Float) -> Float:

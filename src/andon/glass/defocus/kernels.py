@@ -56,22 +56,18 @@ class Kernel:
             return size / 2 + 1e-9
         return size + 0.5 if self.kind == "optical" else REACH_SIGMAS * size + 0.5
 
-    def variance(self, diameter_px: Float, /) -> Float:
-        """Second moment along each axis in px² that a blur of `diameter_px` is to have.
-
-        D²/16; 0 below `LEAST_BLUR_PX`. In mode ``paper`` the printed K/2, which cutting its window
-        makes less; there the weights are as printed and no size is sought.
-        """
-        wanted = diameter_px / 2 if self.kind == "paper" else diameter_px**2 / 16
-        return np.where(diameter_px < LEAST_BLUR_PX, 0.0, wanted)
-
     def sizes(self, diameter_px: Float, /) -> Float:
         """The free size for each diameter ≥ 0: radius of the disc, σ, or K; cut to 64 px."""
         diameter = np.minimum(diameter_px, MAX_BLUR_PX)
         if self.kind == "paper":
             return np.where(diameter < LEAST_BLUR_PX, 0.0, diameter)
+        return np.where(diameter < LEAST_BLUR_PX, 0.0, self.fitted(diameter))
+
+    def fitted(self, diameter: Float, /) -> Float:
+        """Sizes whose second moment on a grid is `diameter`²/16, in cells of that grid, however
+        small; not for ``paper``."""
         sizes, variances = moments(self.kind)
-        return np.interp(self.variance(diameter), variances, sizes)
+        return np.interp(diameter**2 / 16, variances, sizes)
 
 
 def kernel(kind: Blur, /) -> Kernel:

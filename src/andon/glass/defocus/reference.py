@@ -33,7 +33,7 @@ def blurred(layers: Layers, kind: Blur = "optical", /) -> Layers:
         return layers
     shape, cover = kernel(kind), layers.coverage
     surface_px = extended(layers.surface_px, cover)
-    sheet = np.dstack([layers.surface, layers.surface_alpha, cover])
+    sheet = np.dstack([layers.surface, layers.surface_alpha * cover, cover])
     sheet = gathered(sheet, surface_px, shape)
     rim = sheet[..., 4]
 
@@ -50,7 +50,7 @@ def blurred(layers: Layers, kind: Blur = "optical", /) -> Layers:
         coverage=rim,
         refracted=refracted,
         surface=sheet[..., :3],
-        surface_alpha=sheet[..., 3],
+        surface_alpha=_divided(sheet[..., 3:4], rim)[..., 0],
         reflected=reflected,
         refracted_px=refracted_px,
         surface_px=surface_px,
@@ -93,7 +93,7 @@ def gathered(picture: Float, diameter_px: Float, shape: Kernel, /) -> Float:
 def extended(values: Float, coverage: Float, /) -> Float:
     """`values` (H, W) or (H, W, n) where `coverage` (H, W) is not 0, and what is near beyond.
 
-    A pyramid of 2×2 means, weighted by coverage; where a level knows nothing the next coarser one
+    A pyramid of means, weighted by coverage; where a level knows nothing the next coarser one
     answers, by linear interpolation. All zero where nothing is covered at all.
     """
     flat = values.reshape(*coverage.shape, -1)
@@ -114,10 +114,14 @@ def _divided(premultiplied: Float, coverage: Float) -> Float:
 
 
 def _halved(values: Float) -> Float:
-    """(⌈H/2⌉, ⌈W/2⌉, n) means of 2×2, zero beyond the border."""
-    height, width, _ = values.shape
-    even = np.pad(values, ((0, height % 2), (0, width % 2), (0, 0)))
-    return (even[0::2, 0::2] + even[1::2, 0::2] + even[0::2, 1::2] + even[1::2, 1::2]) / 4
+    """(⌈H/2⌉, ⌈W/2⌉, n) means with weights 1 3 3 1 along each axis; the border goes on outside."""
+    for axis in (0, 1):
+        along = np.moveaxis(values, axis, 0)
+        odd = along.shape[0] % 2
+        wide = np.pad(along, ((1, 1 + odd), (0, 0), (0, 0)), mode="edge")
+        means = (wide[0:-3:2] + 3 * wide[1:-2:2] + 3 * wide[2:-1:2] + wide[3::2]) / 8
+        values = np.moveaxis(means, 0, axis)
+    return values
 
 
 def _doubled(values: Float) -> Float:

@@ -17,6 +17,7 @@ from typing import Any
 
 import cv2
 import numpy as np
+from glass.gaze import gaze_rows
 from glass.label import label
 from glass.pattern import pattern
 from numpy.typing import NDArray
@@ -85,7 +86,7 @@ def lamp_lux(scene: dict[str, Any], shape: tuple[int, int]) -> Float:
 
 
 def main() -> None:
-    """Writes left.jpg, right.jpg, pattern.jpg, label.png and board.obj beside scene.toml."""
+    """Writes the two photographs, pattern.jpg, label.png, gaze.csv and board.obj."""
     parser = argparse.ArgumentParser(description="Makes the files of examples/glass.")
     parser.add_argument("out", type=Path, help="folder with scene.toml")
     folder = parser.parse_args().out
@@ -103,6 +104,8 @@ def main() -> None:
     print(write_jpeg(folder / "pattern.jpg", _codes(rectified), quality=QUALITY))
     # Andon writes no pictures with alpha.
     Image.fromarray(label(LABEL_PX)).save(folder / "label.png", optimize=True)
+    names, lines = gaze_rows(scene["observer"]["interpupillary_mm"] / 1000)
+    (folder / "gaze.csv").write_text("\n".join([",".join(names), *lines, ""]), encoding="utf-8")
     x, y = BOARD_M[0] / 2, BOARD_M[1] / 2
     corners = [(-x, -y), (x, -y), (x, y), (-x, y)]
     lines = ["# The board, metres: tools/make_glass.py"]

@@ -72,7 +72,7 @@ def test_pictures_show_the_curves_the_blink_and_the_loss(recording, capfd):
     assert picture.shape == (680, 1200, 3)
 
     def columns(colour, rows):
-        near = (np.abs(picture[rows] - np.array(colour)) <= 12).all(axis=-1)
+        near = (np.abs(picture[rows] - np.array(colour)) <= 4).all(axis=-1)
         return np.flatnonzero(near.sum(axis=0) > 60) / 1200
 
     upper = slice(64, 280)  # below the legend, which shows the same colours

@@ -105,6 +105,53 @@ def clip(
 
 
 @app.command()
+def fuse(
+    out: Annotated[
+        Path,
+        typer.Option("-o", "--out", help="PNG, JPEG: exposure fusion; EXR, HDR: relative light."),
+    ],
+    photos: Annotated[
+        list[Path] | None, typer.Argument(help="PNG or JPEG, two or more of one size.")
+    ] = None,
+    seconds: Annotated[
+        str | None,
+        typer.Option(help="Exposures in the photographs' order: 1/320,1/80,1/20. Default: EXIF."),
+    ] = None,
+    exposures: Annotated[
+        Path | None,
+        typer.Option("--list", help="Names and exposures of the photographs, a line each."),
+    ] = None,
+    align: Annotated[
+        str,
+        typer.Option(metavar="auto|none|shift|ecc", help="Of hand-held photographs; ecc turns."),
+    ] = "auto",
+    sheet: Annotated[
+        Path | None, typer.Option(help="Contact sheet of the photographs and the result.")
+    ] = None,
+    response: Annotated[
+        Path | None,
+        typer.Option(help="Recovered camera response (CSV), for capture.response.file."),
+    ] = None,
+) -> None:
+    """Fuse photographs of several exposures: to a picture, or to light.
+
+    Pictures need no exposure times. Light is relative: 1 is white in the photograph of the middle
+    exposure. Borders of one pure colour, which registration leaves, are left out.
+
+    Examples:
+
+        andon fuse dark.jpg middle.jpg bright.jpg -o fused.png --sheet sheet.png
+
+        andon fuse a.jpg b.jpg c.jpg --seconds 1/320,1/80,1/20 -o room.exr
+
+        andon fuse --list image_list.txt -o church.hdr
+    """
+    from andon.cli.fuse import FuseOptions, run
+
+    run(FuseOptions(tuple(photos or ()), out, seconds, exposures, align, sheet, response))
+
+
+@app.command()
 def demo(
     name: Annotated[str, typer.Argument(help="photo: a real photograph, relit.")] = "photo",
     out: Annotated[Path, typer.Option(help="Folder for the pictures.")] = Path("andon-demo"),

@@ -51,6 +51,8 @@ def rows() -> tuple[Row, ...]:
         area_scene,
         areas,
         gaze,
+        glass,
+        glass_blur,
         harmonics,
         lampshade,
         penumbra,
@@ -75,4 +77,6 @@ def rows() -> tuple[Row, ...]:
         *probe_light.ROWS,
         *probe_space.ROWS,
         *gaze.ROWS,
+        *glass.ROWS,
+        *glass_blur.ROWS,
     )

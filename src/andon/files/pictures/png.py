@@ -49,9 +49,9 @@ def decode_png(data: bytes, file: str, limits: Limits = DEFAULT_LIMITS) -> Pictu
         values = _rgb(np.asarray(image))
     facts = parse_exif(chunks.get("eXIf"), file)
     values = apply_orientation(values, facts.orientation)
-    attributes = {"gamma": image.info["gamma"]} if "gamma" in image.info else {}
+    gamma = {"gamma": image.info["gamma"]} if "gamma" in image.info else {}
     hfov = hfov_degrees(facts, values.shape[1], values.shape[0])
-    return Picture(values, "srgb", icc=name, hfov_degrees=hfov, attributes=attributes)
+    return Picture(values, "srgb", icc=name, hfov_degrees=hfov, attributes=gamma | facts.exposure)
 
 
 def decode_png_raw(data: bytes, file: str, limits: Limits = DEFAULT_LIMITS) -> NDArray[Any]:

@@ -7,7 +7,7 @@ from andon.gbuffer import STRUCTS, pack_surface, pack_view
 from andon.glass import paths, pencils
 from andon.glass.backdrops.buffers import BackdropBuffers
 from andon.glass.model import Backdrop, Ball, LensShape, Slab, Solid, Sticker
-from andon.glass.screen import rectangle_of
+from andon.glass.screen import outline_of, rectangle_of
 from andon.glass.trace_stage import SolidBuffers, TraceStage
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
 from andon.quantities import Surface
@@ -233,6 +233,11 @@ def test_all_glass_is_in_the_rectangle(shape, eye):
     outside[y : y + height, x : x + width] = False
     assert seen.any()
     assert not seen[outside].any()
+    corners = outline_of(solids, view)
+    rows, columns = np.nonzero(seen)
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        side = (b[0] - a[0]) * (rows - a[1]) - (b[1] - a[1]) * (columns - a[0])
+        assert (side >= 0).all()
 
 
 def test_no_rectangle_for_glass_behind_the_eye():

@@ -120,10 +120,10 @@ def trace(
         crossing = next_crossing(solids, rays.point, rays.direction, rays.inside, rays.alive)
         rays.end(crossing.solid < 0)
         crossing = crossing.taken(crossing.solid >= 0)
-        if event == 0:
-            rays.meet(crossing, channel)
         if not len(rays.alive) or event == MAX_EVENTS:
             break
+        if event == 0:
+            rays.meet(crossing, channel)
         rays.cross(crossing, channel)
         if event == 0:
             one = np.array([solid.interfaces == 1 for solid in solids], np.bool_)

@@ -28,6 +28,10 @@ __all__ = [
 
 Float = NDArray[np.float64]
 
+# Along a boundary neighbouring rays part at once. Cosines below this count as this, so that after
+# any number of boundaries a pencil is a number; it is far too wide for any picture by then.
+GRAZING = 1e-6
+
 
 def frames_of(directions: Float, /) -> tuple[Float, Float]:
     """Two unit vectors (n, 3) each, across unit `directions` (n, 3) and one another."""
@@ -54,9 +58,8 @@ def transferred(pencil: Float, distance: Float, directions: Float, normals: Floa
     """
     moved = pencil[:, :, 0] + distance[:, None, None] * pencil[:, :, 1]
     cosine = dot(directions, normals)
-    steps = (
-        -dot(moved, normals[:, None]) / np.where(cosine == 0, np.finfo(float).tiny, cosine)[:, None]
-    )
+    cosine = np.copysign(np.maximum(np.abs(cosine), GRAZING), cosine)
+    steps = -dot(moved, normals[:, None]) / cosine[:, None]
     return np.stack([moved + steps[..., None] * directions[:, None], pencil[:, :, 1]], axis=2)
 
 
@@ -79,7 +82,7 @@ def refracted_pencil(
     moved, bent = pencil[:, :, 0], pencil[:, :, 1]
     turned = np.einsum("nij,nkj->nki", turning, moved)
     c1 = -dot(directions, normals)
-    c2 = np.sqrt(np.maximum(1 - eta**2 * (1 - c1**2), np.finfo(float).tiny))
+    c2 = np.sqrt(np.maximum(1 - eta**2 * (1 - c1**2), GRAZING**2))
     dc1 = -(dot(bent, normals[:, None]) + dot(turned, directions[:, None]))
     dc2 = (eta**2 * c1 / c2)[:, None] * dc1
     steep = (eta * c1 - c2)[:, None, None]
@@ -119,14 +122,14 @@ def vergence(pencil: Float, distance: Float, directions: Float, /) -> Float:
     f1, f2 = frames_of(directions)
     # Rows f1, f2; columns: the four derivatives.
     spread = np.stack([dot(moved, f1[:, None]), dot(moved, f2[:, None])], axis=1)
-    by_origin, (a, b, c, d) = spread[:, :, :2], np.moveaxis(spread[:, :, 2:].reshape(-1, 4), 1, 0)
-    determinant = a * d - b * c
-    size = np.maximum(a * a + b * b + c * c + d * d, np.finfo(float).tiny)
+    by_origin, by_turn = spread[:, :, :2], spread[:, :, 2:]
     # Where rays from one point of the eye meet on the background, its image is at the eye.
-    least = np.finfo(float).eps * size
-    determinant = np.where(
-        np.abs(determinant) < least, np.copysign(least, determinant), determinant
-    )
+    least = np.finfo(float).eps
+    by_turn = by_turn + least * (by_turn == 0).all(axis=(1, 2))[:, None, None] * np.eye(2)
+    a, b, c, d = np.moveaxis(by_turn.reshape(-1, 4), 1, 0)
+    least = least * (a * a + b * b + c * c + d * d)
+    determinant = a * d - b * c
+    determinant = np.copysign(np.maximum(np.abs(determinant), least), determinant)
     adjugate = np.stack([d, -b, -c, a], axis=1).reshape(-1, 2, 2)
     return adjugate @ by_origin / determinant[:, None, None]
 

@@ -15,6 +15,8 @@ from andon.lamps import DirectionalLamp, PointLamp, SkyLamp, SpotLamp
 from andon.lamps.areas import AreaLamp, DiskLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.quantities import Geometry
 from andon.surface.stage import PLAIN, TEXTURED
+from andon.transport.direct.balls.buffers import BALLS, NO_BALLS, PAIRS, pairs_code
+from andon.transport.direct.balls.model import GlassBall
 from andon.transport.direct.shadows.face_maps import DISTANCE, TRIANGLE
 from andon.transport.direct.stage import FILTER, SOFT_FILTER, SUM
 from andon.transport.direct.sum import sum_of_lamps
@@ -86,6 +88,11 @@ VARIANTS = {
     "hard samples": {SOFT_FILTER.format("linear"): SOFT_FILTER.format("none")},
     "one lamp of each kind": {SUM: summed(ONE_OF_EACH)},
     "no lamps": {SUM: summed([])},
+    "glass balls": {
+        SUM: summed(ONE_OF_EACH),
+        NO_BALLS: BALLS,
+        PAIRS: pairs_code(ONE_OF_EACH, [GlassBall(np.zeros(3), 0.1)] * 2, {}),
+    },
     "objects without lamps": {RECEIVERS.format(""): RECEIVERS.format("_lamps")},
     "objects in probes": {RECEIVERS.format(""): RECEIVERS.format("_probes")},
     "probes behind walls": PROBE_VARIANTS["walls"],

@@ -30,8 +30,8 @@ class Caller:
         text = f"""//!import {module}
 {declarations}
 @group(0) @binding(0) var rows: texture_2d_array<f32>;
-@fragment fn call(@builtin(position) place: vec4f) -> @location(0) vec4f {{
-  let at = vec2i(place.xy);
+@fragment fn call(@builtin(position) pixel: vec4f) -> @location(0) vec4f {{
+  let at = vec2i(pixel.xy);
   var x = array<vec4f, {columns}>({reads});
   {statements}
   return {expression};

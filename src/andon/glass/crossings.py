@@ -32,7 +32,7 @@ class Crossing:
     distance : (k,) metres.
     normal, facet : (k, 3) unit, outward: what light is refracted at, and of the geometry.
     turning : (k, 3, 3) dN = turning @ dP.
-    uv : (k, 2), local_point : (k, 3), see `Traced`.
+    uv : (k, 2), local_point : (k, 3), see `Traced`; uv_slope : (k, 2, 3), duv = uv_slope @ dP.
     before, after : (k, solids) bool: what the ray is inside of on both sides.
     """
 
@@ -42,6 +42,7 @@ class Crossing:
     facet: Float
     turning: Float
     uv: Float
+    uv_slope: Float
     local_point: Float
     before: Bool
     after: Bool
@@ -117,12 +118,13 @@ def _facts(
     rays: tuple[Float, Float, Float],
     chosen: Int,
     places: tuple[Int, Float],
-) -> tuple[Float, Float, Float, Float, Float]:
-    """Normal, facet, turning, uv and local point of the boundaries that were `chosen`."""
+) -> tuple[Float, Float, Float, Float, Float, Float]:
+    """Normal, facet, turning, uv, its slope and local point of the `chosen` boundaries."""
     o, d, t = rays
     count = len(o)
     normal, facet, own = np.zeros((3, count, 3))
     turning, uv = np.zeros((count, 3, 3)), np.full((count, 2), np.nan)
+    slope = np.zeros((count, 2, 3))
     for place, solid in enumerate(solids):
         here = np.flatnonzero(chosen == place)
         there = transform_points(local[place], o[here] + t[here, None] * d[here])
@@ -130,8 +132,8 @@ def _facts(
         turn = solid.world_from_glass[:3, :3]
         normal[here], facet[here] = found.normal @ turn.T, found.facet @ turn.T
         turning[here] = turn @ found.turning @ turn.T
-        uv[here], own[here] = found.uv, there
-    return normal, facet, turning, uv, own
+        uv[here], own[here], slope[here] = found.uv, there, found.uv_slope @ turn.T
+    return normal, facet, turning, uv, slope, own
 
 
 class Behind(NamedTuple):

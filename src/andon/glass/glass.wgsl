@@ -19,7 +19,7 @@
 struct Layers {
   // Light that comes through; a: blur.
   @location(0) refracted: vec4f,
-  // Reflectance of what sticks to the glass times α; a: α, which coverage does not multiply.
+  // Reflectance of what sticks to the glass times α; a: α.
   @location(1) surface: vec4f,
   // Light that is mirrored; a: blur.
   @location(2) reflected: vec4f,
@@ -71,7 +71,7 @@ fn sight(pixel: vec2f) -> Sight {
   let near = blur_px(vec4f(1.0, 0.0, 0.0, 1.0) / path.distance, path.distance, pixel_radians);
   return Layers(
     vec4f(through.light * at.coverage, through.blur_px),
-    vec4f(stuck.rgb * at.coverage, stuck.a),
+    stuck * at.coverage,
     vec4f(away.light * at.coverage, away.blur_px),
     vec4f(at.coverage, near, f32(flags), path.distance),
   );

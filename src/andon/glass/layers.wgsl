@@ -69,9 +69,11 @@ fn refracted_layer(ray: Ray, start: Pencil, first: Boundary, path: Path, pixel_r
 }
 
 // Lamps as Phong's lobe, energy kept: E·(m + 1)/(2π)·cosᵐ of the angle from the mirrored ray.
-fn highlight_light(point: vec3f, direction: vec3f, exponent: f32) -> vec3f {
+fn highlight_light(solid: i32, point: vec3f, direction: vec3f) -> vec3f {
+  let exponent = solids[solid].highlight_exponent;
   var light = vec3f(0.0);
   for (var i = 0u; i < glass.highlights; i++) {
+    if SOLIDS > 1 && highlights[i].solid != solid { continue; }
     let place = highlights[i].place;
     let reach = place.xyz - point * place.w;
     let square = dot(reach, reach);
@@ -85,8 +87,7 @@ fn highlight_light(point: vec3f, direction: vec3f, exponent: f32) -> vec3f {
 fn reflected_layer(ray: Ray, start: Pencil, path: Path, pixel_radians: f32) -> Layer {
   let away = mirror(ray, start, path);
   var layer = found(row_of(path.solid), away.ray, away.pencil, ray.origin, pixel_radians);
-  let exponent = solids[row_of(path.solid)].highlight_exponent;
-  layer.light += highlight_light(path.point, away.ray.direction, exponent);
+  layer.light += highlight_light(row_of(path.solid), path.point, away.ray.direction);
   layer.light *= path.reflectance;
   return layer;
 }

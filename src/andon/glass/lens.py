@@ -65,8 +65,10 @@ def lens_crossing(
     return np.maximum(best, 0), part
 
 
-def lens_boundary(lens: LensShape, points: Float, part: Int, /) -> tuple[Float, Float, Float]:
-    """Outward normals (n, 3), their turning (n, 3, 3) and sticker coordinates (n, 2)."""
+def lens_boundary(
+    lens: LensShape, points: Float, part: Int, /
+) -> tuple[Float, Float, Float, Float]:
+    """Normals (n, 3), their turning, sticker coordinates and their slope; see `Boundary`."""
     normal, turning = np.zeros_like(points), np.zeros((len(points), 3, 3))
     for place in (FRONT, BACK, RIM):
         here = part == place
@@ -77,7 +79,8 @@ def lens_boundary(lens: LensShape, points: Float, part: Int, /) -> tuple[Float, 
     width = 2 * lens.radius_m
     uv = np.stack([0.5 + points[:, 0] / width, 0.5 - points[:, 1] / width], axis=-1)
     uv[part == RIM] = np.nan
-    return normal, turning, uv
+    slope = np.broadcast_to([[1 / width, 0, 0], [0, -1 / width, 0]], (len(points), 2, 3))
+    return normal, turning, uv, slope
 
 
 def _from_vertex(lens: LensShape, place: int, points: Float) -> Float:

@@ -82,15 +82,16 @@ class MeshBody:
                 break
         return t, part, weights
 
-    def boundary(self, part: Int, weights: Float, /) -> tuple[Float, Float, Float, Float]:
-        """Normals, facets (n, 3), turning (n, 3, 3) and coordinates (n, 2); see `Boundary`."""
+    def boundary(self, part: Int, weights: Float, /) -> tuple[Float, Float, Float, Float, Float]:
+        """The fields of `Boundary`."""
         corners = self._geometry.triangles[part]
         facet = self._facets[part]
-        uv = np.full((len(part), 2), np.nan)
+        uv, uv_slope = np.full((len(part), 2), np.nan), np.zeros((len(part), 2, 3))
         if self._geometry.uvs is not None:
             uv = np.einsum("nk,nki->ni", weights, self._geometry.uvs[corners])
+            uv_slope = np.einsum("nki,nkj->nij", self._geometry.uvs[corners], self._slopes[part])
         if self._geometry.normals is None:
-            return facet, facet, np.zeros((len(part), 3, 3)), uv
+            return facet, facet, np.zeros((len(part), 3, 3)), uv, uv_slope
         normals = self._geometry.normals[corners]
         mixed = np.einsum("nk,nki->ni", weights, normals)
         length = np.linalg.norm(mixed, axis=1)
@@ -98,7 +99,7 @@ class MeshBody:
         normal = mixed / length[:, None]
         turning = np.einsum("nki,nkj->nij", normals, self._slopes[part]) / length[:, None, None]
         turning -= normal[:, :, None] * np.einsum("ni,nij->nj", normal, turning)[:, None]
-        return normal, facet, turning, uv
+        return normal, facet, turning, uv, uv_slope
 
     def contains(self, points: Float, margin_m: float, /) -> Bool:
         """(n,) bool: the next boundary around is one to leave by; `margin_m` shrinks the box."""

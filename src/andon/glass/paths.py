@@ -53,6 +53,7 @@ class Traced:
     normal : (n, 3) unit, outward, what light is refracted at; 0 if there is none.
     local_point : (n, 3) the point in the body's own frame; 0 if there is none.
     uv : (n, 2) sticker coordinates there, v down; NaN where nothing sticks.
+    uv_steps : (n, 2, 2), [:, k]: how uv moves if the direction turns along e1, e2, per radian.
     reflectance : (n,) Fresnel's of the first boundary; 0 if there is none.
     mirrored : (n, 3) unit, the reflection's direction there; else the ray's own.
     mirrored_pencil : (n, 4, 2, 3) of it, at `point`.
@@ -71,6 +72,7 @@ class Traced:
     normal: Float
     local_point: Float
     uv: Float
+    uv_steps: Float
     reflectance: Float
     mirrored: Float
     mirrored_pencil: Float
@@ -155,7 +157,7 @@ class _Rays:
         self.distance_m = np.full(count, np.inf)
         self.first_point, self.mirrored = origins.copy(), directions.copy()
         self.normal, self.local_point = np.zeros((2, count, 3))
-        self.uv = np.full((count, 2), np.nan)
+        self.uv, self.uv_steps = np.full((count, 2), np.nan), np.zeros((count, 2, 2))
         self.reflectance = np.zeros(count)
         self.mirrored_pencil = self.pencil.copy()
 
@@ -175,8 +177,10 @@ class _Rays:
         self.local_point[at] = crossing.local_point
         self.reflectance[at] = crossing.reflectance(self.solids, incoming, channel)
         self.mirrored[at] = mirrored(incoming, facing)
+        there = crossing.pencil_there(self.pencil[at], incoming)
+        self.uv_steps[at] = np.einsum("nui,nki->nku", crossing.uv_slope, there[:, 2:, 0])
         self.mirrored_pencil[at] = mirrored_pencil(
-            crossing.pencil_there(self.pencil[at], incoming),
+            there,
             incoming,
             facing,
             turning,
@@ -206,6 +210,7 @@ class _Rays:
             self.normal,
             self.local_point,
             self.uv,
+            self.uv_steps,
             self.reflectance,
             self.mirrored,
             self.mirrored_pencil,

@@ -9,13 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.glass.bvh import Places
-from andon.glass.model import MAX_SOLIDS, Ball, Closed, LensShape, Slab, Solid
+from andon.glass.model import (
+    MAX_HIGHLIGHTS,
+    MAX_SOLIDS,
+    Ball,
+    Closed,
+    Highlight,
+    LensShape,
+    Slab,
+    Solid,
+)
 from andon.gpu.layout import HostStruct
 
 __all__ = [
     "GLASS_RECORD",
     "HIGHLIGHT_RECORD",
-    "MAX_HIGHLIGHTS",
     "SOLID_RECORD",
     "STRUCTS",
     "pack_highlights",
@@ -23,9 +31,6 @@ __all__ = [
 ]
 
 Float = NDArray[np.float64]
-
-# Lamps that are seen mirrored in glass.
-MAX_HIGHLIGHTS = 16
 
 SOLID_RECORD = HostStruct(
     "SolidRecord",
@@ -67,6 +72,7 @@ HIGHLIGHT_RECORD = HostStruct(
         # w = 1: place in metres, light in cd. w = 0: direction to the lamp, light in lux.
         ("place", "vec4f"),
         ("light", "vec3f"),
+        ("solid", "i32"),  # that mirrors it
     ),
 )
 
@@ -121,9 +127,11 @@ def pack_solids(
     return table
 
 
-def pack_highlights(places: Float, lights: Float, /) -> NDArray[Any]:
-    """(MAX_HIGHLIGHTS,) `HIGHLIGHT_RECORD` from `places` (n, 4) and `lights` (n, 3), n ≤ 16."""
+def pack_highlights(highlights: Sequence[Highlight], /) -> NDArray[Any]:
+    """(MAX_HIGHLIGHTS,) `HIGHLIGHT_RECORD`; at most as many are given."""
     table = np.zeros(MAX_HIGHLIGHTS, HIGHLIGHT_RECORD.dtype)
-    table["place"][: len(places)] = places
-    table["light"][: len(lights)] = lights
+    for row, one in enumerate(highlights):
+        table[row] = HIGHLIGHT_RECORD.pack(
+            place=(*one.towards, 0.0 if one.distant else 1.0), light=one.light, solid=one.solid
+        )[0]
     return table

@@ -63,12 +63,14 @@ class Boundary:
     facet : (n, 3) unit, outward: of the geometry; `normal` but for smooth meshes.
     turning : (n, 3, 3) how `normal` turns along the boundary: dN = turning @ dP.
     uv : (n, 2) sticker coordinates, v down; NaN where nothing sticks.
+    uv_slope : (n, 2, 3) how they grow along the boundary: duv = uv_slope @ dP.
     """
 
     normal: Float
     facet: Float
     turning: Float
     uv: Float
+    uv_slope: Float
 
 
 def scale_of(shape: Shape, /) -> float:
@@ -112,8 +114,8 @@ def boundary(shape: Shape, points: Float, part: NDArray[np.int64], weights: Floa
         case Slab(half):
             return _slab_boundary(half, points, part)
         case LensShape():
-            normal, turning, uv = lens_boundary(shape, points, part)
-            return Boundary(normal, normal, turning, uv)
+            normal, turning, uv, uv_slope = lens_boundary(shape, points, part)
+            return Boundary(normal, normal, turning, uv, uv_slope)
         case Closed():
             return Boundary(*mesh_body(shape).boundary(part, weights))
 
@@ -152,7 +154,18 @@ def _ball_boundary(radius: float, points: Float) -> Boundary:
     u = 0.5 + np.arctan2(normal[:, 0], normal[:, 2]) / (2 * np.pi)
     v = np.arccos(np.clip(normal[:, 1], -1, 1)) / np.pi
     turning = np.broadcast_to(np.eye(3) / radius, (len(points), 3, 3))
-    return Boundary(normal, normal, turning, np.stack([u, v], axis=-1))
+    uv = np.stack([u, v], axis=-1)
+    return Boundary(normal, normal, turning, uv, _latlong_slope(normal) / radius)
+
+
+def _latlong_slope(normal: Float) -> Float:
+    """(n, 2, 3) derivative of a ball's u and v by the direction (n, 3)."""
+    x, y, z = normal.T
+    across = np.maximum(x * x + z * z, np.finfo(float).eps)
+    down = np.sqrt(across)
+    u = np.stack([z / across, np.zeros_like(x), -x / across], axis=-1) / (2 * np.pi)
+    v = np.stack([x * y / down, -down, z * y / down], axis=-1) / np.pi
+    return np.stack([u, v], axis=1)
 
 
 def _slab(
@@ -180,4 +193,5 @@ def _slab_boundary(half: Float, points: Float, part: NDArray[np.int64]) -> Bound
     normal[rows, part // 2] = np.where(part % 2, 1.0, -1.0)
     uv = np.stack([0.5 + points[:, 0] / (2 * half[0]), 0.5 - points[:, 1] / (2 * half[1])], axis=-1)
     uv[part < 4] = np.nan
-    return Boundary(normal, normal, np.zeros((len(points), 3, 3)), uv)
+    slope = np.broadcast_to([[0.5 / half[0], 0, 0], [0, -0.5 / half[1], 0]], (len(points), 2, 3))
+    return Boundary(normal, normal, np.zeros((len(points), 3, 3)), uv, slope)

@@ -12,10 +12,10 @@ from andon import gbuffer
 from andon.glass.backdrops.records import STRUCTS as BACKDROP_STRUCTS
 from andon.glass.backdrops.records import backdrop_variants
 from andon.glass.bvh import hierarchy, packed
-from andon.glass.model import MAX_SOLIDS, Closed, Solid
+from andon.glass.model import MAX_HIGHLIGHTS, MAX_SOLIDS, Closed, Highlight, Solid
 from andon.glass.outline import Outline, OutlinePass
 from andon.glass.plan import variants_of
-from andon.glass.records import GLASS_RECORD, MAX_HIGHLIGHTS, STRUCTS, pack_highlights, pack_solids
+from andon.glass.records import GLASS_RECORD, STRUCTS, pack_highlights, pack_solids
 from andon.glass.screen import Rectangle, rectangle_of
 from andon.gpu.bindings import BindGroup, bind_group
 from andon.gpu.device import Gpu
@@ -43,7 +43,7 @@ class SolidBuffers:
         self._highlights = uniform_buffer(gpu, size, "highlights")
         self.highlights = 0
         self.write_solids(solids)
-        self.write_highlights(np.zeros((0, 4)), np.zeros((0, 3)))
+        self.write_highlights(())
 
     def _texture(self, texels: NDArray[np.float32], label: str) -> Texture:
         height, width = texels.shape[:2]
@@ -56,16 +56,10 @@ class SolidBuffers:
         self.solids = tuple(solids)
         write_buffer(self.gpu, self._solids, pack_solids(solids, meshes=self._places))
 
-    def write_highlights(self, places: NDArray[Any], lights: NDArray[Any]) -> None:
-        """Lamps that glass mirrors, at most MAX_HIGHLIGHTS.
-
-        Parameters
-        ----------
-        places : (n, 4) position in metres and 1, or unit direction to the lamp and 0.
-        lights : (n, 3) cd, or lux of those with a direction.
-        """
-        self.highlights = len(places)
-        write_buffer(self.gpu, self._highlights, pack_highlights(places, lights))
+    def write_highlights(self, highlights: Sequence[Highlight]) -> None:
+        """Lamps that glass mirrors, at most MAX_HIGHLIGHTS."""
+        self.highlights = len(highlights)
+        write_buffer(self.gpu, self._highlights, pack_highlights(highlights))
 
     @property
     def resources(self) -> dict[int, tuple[str, Any]]:

@@ -57,9 +57,9 @@ def decode_png(data: bytes, file: str, limits: Limits = DEFAULT_LIMITS) -> Pictu
     values = apply_orientation(values, facts.orientation)
     if alpha is not None:
         alpha = apply_orientation(alpha / np.float32(np.iinfo(alpha.dtype).max), facts.orientation)
-    attributes = {"gamma": image.info["gamma"]} if "gamma" in image.info else {}
+    gamma = {"gamma": image.info["gamma"]} if "gamma" in image.info else {}
     hfov = hfov_degrees(facts, values.shape[1], values.shape[0])
-    return Picture(values, "srgb", name, hfov, attributes=attributes, alpha=alpha)
+    return Picture(values, "srgb", name, hfov, attributes=gamma | facts.exposure, alpha=alpha)
 
 
 def decode_png_raw(data: bytes, file: str, limits: Limits = DEFAULT_LIMITS) -> NDArray[Any]:

@@ -58,6 +58,11 @@ fn paraboloid_texel_lit(point: Receiver, texel: vec2i) -> bool {
 }
 
 fn point_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
+  return light_of_point(lamp, layer, position, normal, bias, 1.0);
+}
+
+// `relative`: share of the lamp's intensity that it has in the direction of `position`.
+fn light_of_point(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias: f32, relative: f32) -> vec3f {
   let reach = position - lamps[lamp].position;
   let distance = length(reach);
   let inverse = 1.0 / max(distance, NEAREST_M);
@@ -66,7 +71,8 @@ fn point_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias
   let lift = max(bias, PARABOLOID_LIFT_TEXELS * paraboloid_texel_m(distance, MAP_SIZE));
   let seen = paraboloid_share(Receiver(lamp, layer, reach, normal, away + lift), place);
   let lit = select(seen, 1.0, layer < 0);
-  return lamps[lamp].light * (max(-away, 0.0) * inverse * inverse * inverse * lit);
+  let free = max(-away, 0.0) * inverse * inverse * inverse;
+  return received(lamp, Straight(position, normal, free, lit, lit, relative));
 }
 
 fn cone_ramp(lamp: i32, cosine: f32) -> f32 {
@@ -77,7 +83,7 @@ fn cone_ramp(lamp: i32, cosine: f32) -> f32 {
 fn wide_spot_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias: f32) -> vec3f {
   let reach = position - lamps[lamp].position;
   let cosine = dot(lamps[lamp].axis, reach) * inverseSqrt(dot(reach, reach));
-  return point_illuminance(lamp, layer, position, normal, bias) * cone_ramp(lamp, cosine);
+  return light_of_point(lamp, layer, position, normal, bias, cone_ramp(lamp, cosine));
 }
 
 fn spot_texel_lit(point: Receiver, texel: vec2i) -> bool {
@@ -98,9 +104,11 @@ fn spot_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias:
   let tangent = vec2f(dot(record.right, reach), dot(record.down, reach)) / along;
   let place = (tangent / record.half_width * 0.5 + 0.5) * MAP_SIZE;
   let lift = max(bias, along * record.half_width * (2.0 / MAP_SIZE));
-  let seen = spot_share(Receiver(lamp, layer, reach, normal, away + lift), place);
-  let lit = cone_ramp(lamp, along * inverse) * select(seen, 1.0, layer < 0);
-  return record.light * (max(-away, 0.0) * inverse * inverse * inverse * lit);
+  let found = spot_share(Receiver(lamp, layer, reach, normal, away + lift), place);
+  let seen = select(found, 1.0, layer < 0);
+  let free = max(-away, 0.0) * inverse * inverse * inverse;
+  let lit = cone_ramp(lamp, along * inverse) * seen;
+  return received(lamp, Straight(position, normal, free, lit, seen, 1.0));
 }
 
 fn directional_texel_lit(point: Receiver, texel: vec2i) -> bool {
@@ -125,7 +133,7 @@ fn directional_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f
   let seen = directional_share(Receiver(lamp, layer, reach, normal, lift), place);
   let beyond = layer < 0 || any(abs(at) > vec2f(1.0));
   let lit = select(seen, 1.0, beyond);
-  return record.light * (max(-dot(record.axis, normal), 0.0) * lit);
+  return received(lamp, Straight(position, normal, max(-dot(record.axis, normal), 0.0), lit, lit, 1.0));
 }
 
 fn hemisphere_illuminance(lamp: i32, normal: vec3f) -> vec3f {
@@ -133,6 +141,7 @@ fn hemisphere_illuminance(lamp: i32, normal: vec3f) -> vec3f {
   return mix(lamps[lamp].right, lamps[lamp].light, sky);
 }
 
+//!import andon/transport/direct/balls/none.wgsl
 //!import andon/transport/direct/shadows/bilinear.wgsl
 //!import andon/transport/direct/shadows/filter_none.wgsl
 //!import andon/transport/direct/soft.wgsl

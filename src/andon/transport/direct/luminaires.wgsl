@@ -26,6 +26,6 @@ fn goniometric_illuminance(
   let record = lamps[lamp];
   let reach = position - record.position;
   let local = vec3f(dot(reach, record.right), dot(reach, record.down), dot(reach, record.axis));
-  return point_illuminance(lamp, layer, position, normal, bias)
-    * relative_intensity(first, rows, columns, local);
+  let relative = relative_intensity(first, rows, columns, local);
+  return light_of_point(lamp, layer, position, normal, bias, relative);
 }

@@ -24,6 +24,7 @@ from andon.lamps.areas import AreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereL
 from andon.lamps.distributions import spot_coefficients
 from andon.lamps.edges import polygon_edges
 from andon.lamps.intensity import luminaire_from_world
+from andon.transport.direct.balls.records import BALL_RECORD
 
 __all__ = [
     "DIRECT_RECORD",
@@ -104,7 +105,7 @@ EDGE_RECORD = HostStruct(
 
 STRUCTS = {
     struct.name: struct
-    for struct in (LAMP_RECORD, DIRECT_RECORD, FACE_RECORD, SAMPLE_RECORD, EDGE_RECORD)
+    for struct in (LAMP_RECORD, DIRECT_RECORD, FACE_RECORD, SAMPLE_RECORD, EDGE_RECORD, BALL_RECORD)
 }
 
 # A plane map of half-angle α is tan α wide: at 60° its middle has a quarter of the texels per

@@ -33,6 +33,8 @@ from andon.lamps.form_factors import (
     tube_factor,
 )
 from andon.quantities import Surface
+from andon.transport.direct.balls.model import GlassBall, served_balls
+from andon.transport.direct.balls.reference import through_balls
 from andon.transport.direct.casters import ShadowRays
 from andon.transport.direct.soft import sample_points, sample_weights
 
@@ -161,6 +163,7 @@ def illuminate(
     *,
     bias_m: NDArray[np.float64],
     bodies: Sequence[str] = (),
+    balls: Sequence[GlassBall] = (),
 ) -> Float:
     """Illuminance (H, W, 3) in lux that `lamps` add to `surface`; 0 in holes.
 
@@ -169,6 +172,7 @@ def illuminate(
     rays : against what casts shadows.
     bias_m : (H, W) lift along the normal before a shadow ray starts, metres.
     bodies : names of the luminous bodies that `surface.body_id` counts.
+    balls : of glass, which bend the light of point, spot, measured and directional lamps.
     """
     total = np.zeros((*surface.view.shape, 3))
     mask = surface.valid
@@ -180,11 +184,26 @@ def illuminate(
         light = illuminance(lamp, position, normal)
         if isinstance(lamp, AreaLamp) and lamp.body in bodies and body is not None:
             light[body == list(bodies).index(lamp.body)] = 0
+        bent = None
+        if served := served_balls(lamp, balls):
+            is_open, bent = through_balls(lamp, served, position, normal)
+            light[~is_open] = 0
+            light += bent
         lit = np.abs(light).max(axis=-1) > 0
+        if bent is not None:
+            # What does not face the lamp has no straight line to it that could be hidden.
+            lit &= _faces(lamp, position, normal)
         light[lit] *= _share(lamp, position[lit], normal[lit], lifted[lit], rays)
         added += light
     total[mask] = added
     return total
+
+
+def _faces(lamp: Lamp, position: Float, normal: Float) -> NDArray[np.bool_]:
+    if isinstance(lamp, DirectionalLamp):
+        return normal @ lamp.direction < 0
+    assert isinstance(lamp, PointLamp)
+    return np.einsum("ij,ij->i", lamp.position_m - position, normal) > 0
 
 
 def _share(lamp: Lamp, position: Float, normal: Float, lifted: Float, rays: ShadowRays) -> Float:

@@ -10,6 +10,8 @@ from andon.gpu.device import Gpu
 from andon.gpu.textures import uniform_buffer, write_buffer
 from andon.lamps import Lamp
 from andon.transport.direct.area_buffers import AreaBuffers
+from andon.transport.direct.balls.buffers import BallBuffers
+from andon.transport.direct.balls.model import GlassBall
 from andon.transport.direct.casters import Casters
 from andon.transport.direct.luminaire_tables import LuminaireTables
 from andon.transport.direct.records import (
@@ -54,6 +56,7 @@ class DirectStage:
         bias_real_m: float,
         bias_object_m: float,
         captured: Set[str] = frozenset(),
+        balls: Sequence[GlassBall] = (),
     ) -> None:
         self.gpu = gpu
         self.bias = {"bias_real_m": bias_real_m, "bias_object_m": bias_object_m}
@@ -62,6 +65,8 @@ class DirectStage:
         self.soft = SoftMaps(gpu, self.casters, lamps)
         self.areas = AreaBuffers(gpu, lamps)
         luminaires = LuminaireTables(gpu, lamps)
+        self.balls = tuple(balls)
+        self.glass = BallBuffers(gpu, lamps, self.balls, luminaires.tables)
         code = sum_of_lamps(
             lamps,
             bodies,
@@ -78,6 +83,7 @@ class DirectStage:
             SUM: code,
             FILTER.format("none"): FILTER.format(self.maps.filter),
             SOFT_FILTER.format("linear"): SOFT_FILTER.format(self.soft.filter),
+            **self.glass.variants,
         }
         self._lamps = uniform_buffer(gpu, LAMP_RECORD.dtype.itemsize * MAX_LAMPS, "lamps")
         self._settings = uniform_buffer(gpu, DIRECT_RECORD.dtype.itemsize, "direct")
@@ -94,13 +100,25 @@ class DirectStage:
                 7: ("storage", self.areas.edges_buffer),
                 8: ("storage", luminaires.buffer),
                 9: ("sampler", gpu.device.create_sampler()),
+                **self.glass.resources,
             },
             "direct",
         )
 
-    def encode(self, encoder: Any, lamps: Sequence[Lamp], casters: Casters) -> int:
-        """Brings maps and records to `lamps` (same names as at the start); returns maps redrawn."""
+    def encode(
+        self,
+        encoder: Any,
+        lamps: Sequence[Lamp],
+        casters: Casters,
+        balls: Sequence[GlassBall] | None = None,
+    ) -> int:
+        """Brings maps and records to `lamps` (same names as at the start); returns maps redrawn.
+
+        `balls` are as many as at the start; None: they have not moved.
+        """
+        self.balls = self.balls if balls is None else tuple(balls)
         self.casters.move(casters)
+        self.glass.update(lamps, self.balls)
         redrawn = self.soft.update(lamps) + self.maps.update(encoder, lamps)
         self.areas.update(lamps)
         if lamps:

@@ -8,7 +8,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from andon.glass.backdrops.atlas import make_atlas
-from andon.glass.backdrops.levels import FORMAT, Levels
+from andon.glass.backdrops.levels import FORMAT, FrameLevels, Levels
 from andon.glass.backdrops.records import (
     BACKDROP_RECORD,
     ENVIRONMENT_RECORD,
@@ -20,7 +20,7 @@ from andon.gpu.bindings import BindGroup, bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
 
-__all__ = ["BackdropBuffers"]
+__all__ = ["BackdropBuffers", "FrameLevels"]
 
 
 class BackdropBuffers:

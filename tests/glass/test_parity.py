@@ -7,7 +7,7 @@ import pytest
 
 from andon.glass import paths, pencils, refraction, shapes
 from andon.glass.bvh import hierarchy
-from andon.glass.model import Ball, Closed, LensShape, Slab, Solid
+from andon.glass.model import Ball, Closed, LensShape, Slab, Solid, Sticker
 from andon.quantities import Geometry
 from andon.spaces import look_at
 from comparison import assert_agree
@@ -347,3 +347,53 @@ def test_boxes_hold_their_triangles():
             held = np.concatenate([np.arange(c // 8, c // 8 + c % 8) for c in below[below >= 0]])
             assert (corners[held] >= nodes[node, 0, :3]).all()
             assert (corners[held] <= nodes[node, 1, :3]).all()
+
+
+# ── stickers ────────────────────────────────────────────────────────────────────────────────────
+
+STUCK = Sticker(np.ones((4, 4, 4), np.float32), 0.2)
+STICK = """
+  let ray = Ray(x[0].xyz, x[1].xyz);
+  let met = boundary(ray, 0u);
+  let point = ray.origin + met.distance * ray.direction;
+  let along = x[2].xyz - met.facet * dot(x[2].xyz, met.facet);
+  let moves = mat2x3f(along, -2.0 * along);
+  let here = sticking(met, point, moves);
+  let there = sticking(met, point + 2e-4 * along, moves);
+"""
+
+
+@pytest.mark.parametrize("name", ["ball", "slab", "lens", "ring"])
+def test_stickers(gpu, name):
+    """Coordinates are those of the reference, and they grow as `steps` says."""
+    solid = placed((SHAPES | MESHES)[name], sticker=STUCK)
+    origins, directions = rays(2000, seed=8, size=0.05)
+    truth = paths.trace([solid], origins, directions)
+    generator = np.random.default_rng(9)
+    moves = unit(generator.normal(size=origins.shape))
+    place, steps, moved = of_solids(
+        gpu,
+        [solid],
+        [
+            "vec4f(here.uv, f32(met.solid), 0.0)",
+            "vec4f(here.steps[0], here.steps[1])",
+            "vec4f((there.uv - here.uv) / 2e-4, 0.0, 0.0)",
+        ],
+        origins,
+        directions,
+        moves,
+        statements=STICK,
+    )
+    stuck = (truth.solid >= 0) & np.isfinite(truth.uv).all(axis=1)
+    assert stuck.mean() > 0.1
+    bare = (truth.solid >= 0) & ~stuck & (place[:, 2] >= 0)
+    # A few are beside the edge of what can be stuck on.
+    assert np.count_nonzero(place[bare, 0] >= 0) <= 0.002 * len(place)
+    apart = np.abs(place[stuck, :2] - truth.uv[stuck] % 1.0)
+    # 0 and 1 are one place on pictures that go around.
+    assert_agree(np.minimum(apart, 1 - apart), 0 * apart, atol=1e-4, share=0.01, what="uv")
+    np.testing.assert_allclose(steps[stuck, 2:], -2 * steps[stuck, :2], atol=1e-5)
+    # Beside seams and poles, and not off the end of a cap.
+    plain = stuck & (np.abs(moved[:, :2]).max(axis=1) < 30) & (place[:, :2].min(axis=1) > 0.02)
+    error = np.abs(moved[plain, :2] - steps[plain, :2])
+    assert np.quantile(error, 0.95) < 0.02 * np.abs(steps[plain, :2]).max()

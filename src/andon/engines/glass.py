@@ -187,7 +187,7 @@ def glass_of(
         return None
     solids = solids_of(scene)
     eyes = {name: frame.view.position for name, frame in frames.items()}
-    check_eye(solids, eyes)
+    check_eye(solids, np.array(list(eyes.values())))
     left = np.asarray(ambient.dimming) * ambient.mean_lux
     gaze = scene.gaze
     model = GlassModel(

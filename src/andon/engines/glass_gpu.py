@@ -82,7 +82,8 @@ class GlassView:
         trace = self.trace
         self._light = self._sticker_light(seen, *lit) if trace.stickers is not None else None
         layers = (trace.refracted, trace.surface, trace.reflected, trace.sizes)
-        self._defocus = DefocusStage(gpu, *layers, luminance, model.blur)
+        size = (view.width, view.height)
+        self._defocus = DefocusStage(gpu, *layers, luminance, model.blur, size)
 
     def _sticker_light(
         self, seen: GpuSurface, resources: dict[int, tuple[str, Any]], lamps: direct.DirectStage

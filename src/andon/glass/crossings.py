@@ -128,8 +128,7 @@ def _facts(
     for place, solid in enumerate(solids):
         here = np.flatnonzero(chosen == place)
         there = transform_points(local[place], o[here] + t[here, None] * d[here])
-        part, weights = (each[here, place] for each in places)
-        found = boundary(solid.shape, there, part, weights)
+        found = boundary(solid.shape, there, places[0][here, place], places[1][here, place])
         turn = solid.world_from_glass[:3, :3]
         normal[here], facet[here] = found.normal @ turn.T, found.facet @ turn.T
         turning[here] = turn @ found.turning @ turn.T

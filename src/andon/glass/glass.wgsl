@@ -27,6 +27,11 @@ struct Layers {
   @location(3) sizes: vec4f,
 };
 
+// The polygon around all glass.
+@vertex fn outline(@location(0) place: vec2f) -> @builtin(position) vec4f {
+  return vec4f(place, 0.0, 1.0);
+}
+
 // What a pixel sees of the glass: the ray to trace for it, where that meets glass, and the share of
 // the pixel that is glass, 0 where something nearer hides it.
 struct Sight {

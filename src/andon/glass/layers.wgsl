@@ -51,7 +51,7 @@ fn found(solid: i32, ray: Ray, p: Pencil, eye: vec3f, pixel_radians: f32) -> Lay
 }
 
 fn found_through(ray: Ray, path: Path, pixel_radians: f32) -> Layer {
-  var layer = found(path.solid, path.exit, path.pencil, ray.origin, pixel_radians);
+  var layer = found(row_of(path.solid), path.exit, path.pencil, ray.origin, pixel_radians);
   layer.light *= path.transmitted * path.inside;
   return layer;
 }
@@ -86,8 +86,8 @@ fn highlight_light(solid: i32, point: vec3f, direction: vec3f) -> vec3f {
 
 fn reflected_layer(ray: Ray, start: Pencil, path: Path, pixel_radians: f32) -> Layer {
   let away = mirror(ray, start, path);
-  var layer = found(path.solid, away.ray, away.pencil, ray.origin, pixel_radians);
-  layer.light += highlight_light(path.solid, path.point, away.ray.direction);
+  var layer = found(row_of(path.solid), away.ray, away.pencil, ray.origin, pixel_radians);
+  layer.light += highlight_light(row_of(path.solid), path.point, away.ray.direction);
   layer.light *= path.reflectance;
   return layer;
 }
@@ -97,7 +97,7 @@ fn stuck_on(ray: Ray, start: Pencil, first: Boundary, pixel_radians: f32) -> vec
   if !STICKERS {
     return vec4f(0.0);
   }
-  let solid = max(first.solid, 0);
+  let solid = row_of(first.solid);
   let on = transferred(start, first.distance, ray.direction, first.facet);
   let moves = mat2x3f(on.place[2], on.place[3]) * pixel_radians;
   let at = sticking(first, ray.origin + first.distance * ray.direction, moves);

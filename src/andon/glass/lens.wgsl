@@ -60,7 +60,8 @@ fn lens_hit(origin: vec3f, direction: vec3f, shape: vec4f, inside: bool) -> Hit 
 
 // On both caps.
 fn lens_sticking(point: vec3f, normal: vec3f, shape: vec4f, moves: mat2x3f) -> Sticking {
-  if normal.z == 0.0 {
+  // The rim's normals are across z, but for rounding.
+  if abs(normal.z) < 1e-5 {
     return nothing_sticks();
   }
   let scale = vec2f(0.5, -0.5) / shape.x;

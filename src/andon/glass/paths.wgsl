@@ -39,15 +39,21 @@ struct Path {
   status: u32,
 };
 
+// The row of a solid in tables; of one alone it is a constant, and what is read there is read once
+// for all pixels.
+fn row_of(solid: i32) -> i32 {
+  return select(max(solid, 0), 0, SOLIDS == 1);
+}
+
 // Refractive index of what a ray is in; air is 1.
 fn index_of(inside: u32, channel: i32) -> f32 {
-  let last = firstLeadingBit(inside);
-  return select(solids[max(last, 0)].index[channel], 1.0, inside == 0u);
+  let last = i32(firstLeadingBit(inside));
+  return select(solids[row_of(last)].index[channel], 1.0, inside == 0u);
 }
 
 fn absorption_of(inside: u32) -> vec3f {
   let last = i32(firstLeadingBit(inside));
-  return select(solids[max(last, 0)].absorption_per_m, vec3f(0.0), inside == 0u);
+  return select(solids[row_of(last)].absorption_per_m, vec3f(0.0), inside == 0u);
 }
 
 fn against(D: vec3f, normal: vec3f) -> vec3f {

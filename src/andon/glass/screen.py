@@ -1,4 +1,4 @@
-"""Where glass is on the screen: nothing outside that rectangle is traced."""
+"""Where glass is on the screen: nothing outside its outline is traced."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.glass.model import Ball, LensShape, Slab, Solid
-from andon.spaces import View, rotate, transform_points
+from andon.glass.model import MAX_SOLIDS, Ball, LensShape, Slab, Solid
+from andon.spaces import View, perpendicular, rotate, transform_points
 
-__all__ = ["Rectangle", "rectangle_of"]
+__all__ = ["MOST_CORNERS", "Rectangle", "outline_of", "rectangle_of"]
 
 Float = NDArray[np.float64]
 # x, y, width, height in pixels
@@ -20,6 +20,9 @@ Rectangle = tuple[int, int, int, int]
 MARGIN_PX = 1.0
 # What reaches nearer to the plane of the eye than this may be anywhere in a pinhole picture.
 NEAREST_M = 1e-3
+# Corners of the polygon around a ball: 0.6 % more than its disc.
+BALL_CORNERS = 24
+MOST_CORNERS = BALL_CORNERS * MAX_SOLIDS
 
 
 def rectangle_of(solids: Sequence[Solid], view: View, /) -> Rectangle | None:
@@ -79,6 +82,61 @@ def _of_sphere(solid: Solid, view: View) -> tuple[Float, Float]:
         np.where(low > -limit, np.tan(np.clip(low, -limit, limit)), -np.inf),
         np.where(high < limit, np.tan(np.clip(high, -limit, limit)), np.inf),
     )
+
+
+def outline_of(solids: Sequence[Solid], view: View, /) -> Float:
+    """(n ≤ MOST_CORNERS, 2) a convex polygon in pixels around all of `solids`, centres at integers.
+
+    It may reach out of the picture, and is all of it where there is no telling.
+    """
+    right, low = view.width - 0.5, view.height - 0.5
+    whole = np.array([[-0.5, -0.5], [right, -0.5], [right, low], [-0.5, low]])
+    if view.projection != "pinhole":
+        return whole
+    points = np.concatenate([_around(solid, view) for solid in solids])
+    if points[:, 2].min() < NEAREST_M:
+        return whole
+    focal, centre = np.array([view.fx, view.fy]), np.array([view.cx, view.cy])
+    return _hull(focal * points[:, :2] / points[:, 2:] + centre)
+
+
+def _around(solid: Solid, view: View) -> Float:
+    """(n, 3) points in the camera's frame, the hull of which hides a body from the eye."""
+    if not isinstance(solid.shape, Ball):
+        corners = _corners(solid)
+        middle = corners.mean(axis=0)
+        # A hair larger: pixels on the very edge are glass.
+        grown = middle + 1.001 * (corners - middle)
+        return transform_points(view.camera_from_world @ solid.world_from_glass, grown)
+    middle = transform_points(view.camera_from_world, solid.world_from_glass[:3, 3])
+    distance = float(np.linalg.norm(middle))
+    if distance <= solid.shape.radius_m:
+        return np.zeros((1, 3))
+    half = np.arcsin(solid.shape.radius_m / distance) + MARGIN_PX / min(view.fx, view.fy)
+    if half >= np.pi / 2:
+        return np.zeros((1, 3))
+    across, down = perpendicular(middle / distance)
+    turn = 2 * np.pi * np.arange(BALL_CORNERS)[:, None] / BALL_CORNERS
+    around = np.cos(turn) * across + np.sin(turn) * down
+    return middle + distance * np.tan(half) / np.cos(np.pi / BALL_CORNERS) * around
+
+
+def _hull(points: Float) -> Float:
+    """(n, 2) corners of the convex hull in order (Andrew 1979)."""
+    ordered = sorted({(float(x), float(y)) for x, y in points})
+    halves: list[list[tuple[float, float]]] = []
+    for row in (ordered, ordered[::-1]):
+        half: list[tuple[float, float]] = []
+        for x, y in row:
+            while len(half) > 1 and _turns_right(half[-2], half[-1], (x, y)):
+                half.pop()
+            half.append((x, y))
+        halves.append(half[:-1])
+    return np.array(halves[0] + halves[1])
+
+
+def _turns_right(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> bool:
+    return (b[0] - a[0]) * (c[1] - a[1]) <= (b[1] - a[1]) * (c[0] - a[0])
 
 
 def _corners(solid: Solid) -> Float:

@@ -17,9 +17,11 @@ fn silhouette(ray: Ray, pixel_radians: f32) -> Edge {
   let along = dot(to, ray.direction);
   let aside = along * ray.direction - to;
   let off = length(aside);
-  let angle = atan2(off, along);
-  let outline = asin(min(radius / length(to), 1.0));
-  let coverage = clamp((outline - angle) / pixel_radians + 0.5, 0.0, 1.0);
+  // sin of the angles of outline and ray; over a pixel they differ as the angles times the cosine.
+  let distance = length(to);
+  let slope = sqrt(max(distance * distance - radius * radius, 0.0));
+  let inwards = (radius - off) / max(slope * pixel_radians, 1e-30);
+  let coverage = select(0.0, clamp(inwards + 0.5, 0.0, 1.0), along > 0.0);
   // The nearest ray that meets the ball: towards where this one passes, drawn in.
   let drawn = to + aside * min(WITHIN * radius / max(off, 1e-30), 1.0);
   let nearest = select(normalize(drawn), ray.direction, off <= WITHIN * radius);

@@ -13,18 +13,17 @@ from andon.glass.backdrops.records import STRUCTS as BACKDROP_STRUCTS
 from andon.glass.backdrops.records import backdrop_variants
 from andon.glass.bvh import hierarchy, packed
 from andon.glass.model import MAX_HIGHLIGHTS, MAX_SOLIDS, Closed, Highlight, Solid
+from andon.glass.outline import Outline, OutlinePass
 from andon.glass.plan import variants_of
 from andon.glass.records import GLASS_RECORD, STRUCTS, pack_highlights, pack_solids
 from andon.glass.screen import Rectangle, rectangle_of
 from andon.gpu.bindings import BindGroup, bind_group
 from andon.gpu.device import Gpu
-from andon.gpu.passes import FullscreenPass, color_attachment
 from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
 from andon.spaces import View
 
-__all__ = ["GLASS", "SolidBuffers", "TraceStage"]
+__all__ = ["SolidBuffers", "TraceStage"]
 
-GLASS = "andon/glass/glass.wgsl"
 LAYER, SURFACE = "rgba16float", "rgba32uint"
 
 
@@ -113,12 +112,12 @@ class TraceStage:
             | variants_of(solids.solids)
             | backdrop_variants(solids.solids, view.projection),
         }
-        self._trace = FullscreenPass(gpu, GLASS, "layers", [LAYER] * 4, groups, **options)
+        self._outline = Outline(gpu, view)
+        self._trace = OutlinePass(gpu, "layers", [LAYER] * 4, groups, options)
         self.stickers: Texture | None = None
         if any(solid.sticker is not None for solid in solids.solids):
             self.stickers = make_texture(gpu, SURFACE, *size, label="stickers")
-            self._stick = FullscreenPass(gpu, GLASS, "stickers", [SURFACE], groups, **options)
-        self._drawn: dict[str, Rectangle] = {}
+            self._stick = OutlinePass(gpu, "stickers", [SURFACE], groups, options)
 
     @property
     def within(self) -> Rectangle | None:
@@ -150,28 +149,11 @@ class TraceStage:
 
     def encode(self, encoder: Any) -> None:
         """Records the layers."""
-        self._draw(encoder, self._trace, self._layers)
+        self._outline.move(self._shared.solids)
+        self._trace.encode(encoder, self._layers, self._outline)
 
     def encode_stickers(self, encoder: Any) -> None:
         """Records the G-buffer of what sticks to the glass, where something does."""
         if self.stickers is not None:
-            self._draw(encoder, self._stick, [self.stickers])
-
-    def _draw(self, encoder: Any, step: FullscreenPass, targets: Sequence[Texture]) -> None:
-        within = self.within
-        # A pass writes all of its rectangle: only where that has moved is there something to clear.
-        keeps = within is not None and self._drawn.get(step.label) == within
-        render = encoder.begin_render_pass(
-            label=step.label,
-            color_attachments=[color_attachment(target.view, load=keeps) for target in targets],
-        )
-        if within is not None:
-            render.set_pipeline(step.pipeline)
-            for index, group in enumerate(step.groups):
-                render.set_bind_group(index, group.group)
-            render.set_scissor_rect(*within)
-            render.draw(3)
-            self._drawn[step.label] = within
-        else:
-            self._drawn.pop(step.label, None)
-        render.end()
+            self._outline.move(self._shared.solids)
+            self._stick.encode(encoder, [self.stickers], self._outline)

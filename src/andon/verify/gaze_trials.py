@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.files.gaze import GazeRecording
-from andon.observer.gaze import make_filter, smoothed
+from andon.observer.gaze import FILTERS, Smoother, make_filter, smoothed
 from andon.observer.gaze.fixation import fixations
 from andon.observer.model import Fixation
 
-__all__ = ["RATE_HZ", "eyes_on", "noisy_rest", "ramp_lag", "rest_figures", "step_seconds"]
+__all__ = [
+    "RATE_HZ",
+    "eyes_on",
+    "faulty_outputs",
+    "noisy_rest",
+    "ramp_lag",
+    "rest_figures",
+    "step_seconds",
+]
 
 Float = NDArray[np.float64]
 
@@ -92,3 +101,49 @@ def ramp_lag(name: str) -> float:
         return float(times[-1] - (2 - out[-1]) / 0.1)
     out = smoothed(times, 0.5 + 0.25 * times, make_filter(name)).dioptres
     return float(times[-1] - (out[-1] - 0.5) / 0.25)
+
+
+def faulty_outputs() -> Iterator[Float]:
+    """What every filter says of every fault, at samples and between them."""
+    for rate_hz in (7.0, 30.0, 200.0, 1000.0):
+        for times, recording in _faults(rate_hz):
+            found = fixations(recording)
+            for name in FILTERS:
+                one = Smoother(make_filter(name))
+                said: list[float] = []
+                for time, value in zip(times.tolist(), found.dioptres.tolist(), strict=True):
+                    said.append(one.push(time, value))
+                    dioptres = one.at(time + 0.3 / rate_hz)[0]
+                    said.append(one.dioptres if dioptres is None else dioptres)
+                yield np.array(said)
+
+
+def _faults(rate_hz: float) -> Iterator[tuple[Float, GazeRecording]]:
+    """(times as they come in, 4 s of eyes on 0.7 m) for each way in which a tracker fails."""
+    times = np.arange(round(4 * rate_hz)) / rate_hz
+    count = len(times)
+    sound = eyes_on(times, straight_ahead(np.full(count, 0.7)), NOISE_DEGREES)
+    generator = np.random.default_rng(9)
+    blink = (times % 1.0) < 0.2
+    kinds: dict[str, NDArray[np.bool_]] = {
+        "blinks": np.repeat(blink[:, None], 2, axis=1),
+        "one eye": np.stack([times > 2, np.zeros(count, bool)], axis=1),
+        "bursts": generator.random((count, 2)) < 0.5,
+        "nothing": np.ones((count, 2), bool),
+    }
+    for gone in kinds.values():
+        yield times, _with(sound, np.where(gone[..., None], np.nan, sound.directions))
+    ahead = np.zeros_like(sound.directions)
+    ahead[..., 2] = 1.0
+    yield times, _with(sound, np.where(blink[:, None, None], ahead, sound.directions))
+    yield times, _with(sound, sound.directions * generator.choice([1.0, -1.0], (count, 1, 1)))
+    jumps = times.copy()
+    jumps[count // 4] -= 0.5
+    jumps[count // 2 :] -= 3.0
+    jumps[3 * count // 4 :] += 10.0
+    jumps[-1] = np.nan
+    yield jumps, sound
+
+
+def _with(sound: GazeRecording, directions: Float) -> GazeRecording:
+    return GazeRecording(sound.times_seconds, sound.origins_m, directions, sound.confidence)

@@ -50,6 +50,7 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        gaze,
         glass,
         glass_blur,
         harmonics,
@@ -75,6 +76,7 @@ def rows() -> tuple[Row, ...]:
         *harmonics.ROWS,
         *probe_light.ROWS,
         *probe_space.ROWS,
+        *gaze.ROWS,
         *glass.ROWS,
         *glass_blur.ROWS,
     )

@@ -12,11 +12,11 @@ it leaves the glass to where it leaves the picture or is infinitely far away:
          │            ┃      o  ✗          in front at one step, behind at the next: in between
          ▽            ┗━━━━━━━━━━━━        it hit, or passed behind an edge
 
-Then the ray is cut with the plane of the pixel it was at last, or else the interval is halved. It
-is a hit where a plane is met within its own pixel, from the front, or where the interval is less
-than a pixel. Unless the depths there differ by more than 5 %: then the ray has passed behind the
-nearer surface, and goes on until it is in front again. Holes are passed. Planes are met exactly,
-up to the pixel's normal.
+Then the ray is cut with the plane of the pixel that it is behind; where the cut is, the next pixel
+is looked at, or in the middle of the interval. It is a hit where a plane is met within its own
+pixel, from the front, or where the interval is less than a pixel. Unless the depths there differ by
+more than 5 %: then the ray has passed behind the nearer surface, and goes on until it is in front
+again. Holes are passed. Planes are met exactly, up to the pixel's normal.
 
 What the eye does not see is not there: the back of things and what they hide cannot be hit. What
 is thinner in the picture than a step may be passed through.
@@ -25,6 +25,7 @@ is thinner in the picture than a step may be passed through.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,13 +34,14 @@ from andon.glass.backdrops.model import MAX_JUMP
 from andon.glass.backdrops.trails import Trail, apart, make_trail
 from andon.quantities import Surface
 
-__all__ = ["LOOKS", "NEAR_PX", "STEPS", "march"]
+__all__ = ["LOOKS", "NEAR_PX", "ROUNDS", "STEPS", "march"]
 
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 
-# Coarse steps along the whole way, and looks at the G-buffer in all.
-STEPS, LOOKS = 16, 40
+
+# Equal steps along the whole way; looks at one interval; intervals that may be edges.
+STEPS, LOOKS, ROUNDS = 32, 12, 4
 # A plane that is met within this many pixels from where it was looked up is the pixel's own: half
 # a pixel's diagonal, and some. Intervals shorter than a pixel are not divided.
 NEAR_PX = 0.75
@@ -47,153 +49,170 @@ NEAR_PX = 0.75
 
 @dataclass
 class _State:
-    """Of n rays: an interval of s, what was at its ends, and what was found.
+    """Of n rays.
 
-    `closed`: the ray is in front at `low` and behind at `high`; else only `low` counts.
+    Attributes
+    ----------
+    step : of s.
+    low, high : (n,) the ray goes behind something in between, once `closed`; else it is at low.
+    front : (n,) it is in front at `low`.
+    depth : (n,) what was last in front of it, NaN for nothing yet.
     """
 
-    s: Float
     step: Float
     low: Float
     high: Float
-    low_depth: Float
-    low_pixel: Float
-    high_pixel: Float
-    high_depth: Float
     front: Bool
-    closed: Bool
-    distance: Float
-    normal: Float
-    planes: Float
-    plane_normal: Float
+    depth: Float
 
-    @classmethod
-    def start(cls, trail: Trail) -> _State:
-        n = len(trail.tau)
-        ends = [trail.at(s)[0] for s in (trail.first, np.maximum(trail.last, trail.first))]
-        length = np.full(n, float(STEPS))
-        if trail.view.projection == "pinhole":
-            length = np.clip(apart(trail.view, *ends), 1, STEPS)
-        nan, no = np.full(n, np.nan), np.zeros(n, np.bool_)
-        return cls(
-            *(
-                trail.first.copy(),
-                (trail.last - trail.first) / length,
-                trail.first.copy(),
-                nan.copy(),
-            ),
-            *(nan.copy(), ends[0].copy(), ends[0].copy(), nan.copy(), no.copy(), no.copy()),
-            *(np.full(n, np.inf), np.full((n, 3), np.nan), nan.copy(), np.full((n, 3), np.nan)),
-        )
+    def part(self, rows: NDArray[Any]) -> _State:
+        return _State(*(np.array(values[rows]) for values in vars(self).values()))
+
+    def put(self, rows: NDArray[Any], other: _State) -> None:
+        for name, values in vars(other).items():
+            getattr(self, name)[rows] = values
 
 
 @dataclass(frozen=True)
-class _Look:
-    """The pixels that n rays are at.
+class _Rays:
+    """n rays of the world, and what they draw in the picture."""
 
-    `plane` (n,) metres along the ray to the pixel's plane, NaN where it is not met from its front
-    or the pixel is a hole; `own` it is met within the pixel.
-    """
+    surface: Surface
+    trail: Trail
+    origins: Float
+    directions: Float
 
-    pixel: Float
-    depth: Float
-    normal: Float
-    in_front: Bool
-    plane: Float
-    own: Bool
+    def part(self, rows: NDArray[Any]) -> _Rays:
+        return _Rays(self.surface, self.trail.part(rows), self.origins[rows], self.directions[rows])
+
+    def pixels(self, s: Float) -> tuple[Float, NDArray[np.int64], Float, Float]:
+        """Where the rays are at `s` (n,): place in the picture, (2, n) row and column of the
+        pixel, its depth (NaN for holes and beside the picture) and the ray's.
+        """
+        view = self.surface.view
+        place, reached = self.trail.at(s)
+        with np.errstate(invalid="ignore"):
+            limit = np.array([view.width - 1, view.height - 1])
+            inside = (np.abs(place - limit / 2) <= limit / 2 + 0.501).all(axis=1)
+            nearest = np.rint(place)
+        if view.projection == "latlong":
+            nearest[:, 0] %= view.width
+        column, row = np.nan_to_num(np.clip(nearest, 0, limit)).astype(np.int64).T
+        inside &= self.surface.valid[row, column]
+        depth = np.where(inside, self.surface.depth[row, column], np.nan)
+        return place, np.stack([row, column]), depth, reached
 
 
 def march(surface: Surface, origins: Float, directions: Float, /) -> tuple[Float, Float]:
     """First hits: (n,) metres along unit `directions` (n, 3) from `origins` (n, 3), inf where
     there is none; and (n, 3) normals, NaN where there is none.
     """
-    trail = make_trail(surface.view, origins, directions)
     distance, normals = np.full(len(origins), np.inf), np.full((len(origins), 3), np.nan)
+    trail = make_trail(surface.view, origins, directions)
     rows = np.flatnonzero(trail.last >= trail.first)
-    trail, state = trail.part(rows), _State.start(trail.part(rows))
-    world = origins[rows], directions[rows]
-    for number in range(LOOKS):
-        if len(rows) == 0:
-            break
-        look = _look(surface, trail, state.s, *world)
-        going = _advance(state, trail, look, number)
-        found = ~going & np.isfinite(state.distance)
-        distance[rows[found]], normals[rows[found]] = state.distance[found], state.normal[found]
-        rows, trail, world = rows[going], trail.part(going), (world[0][going], world[1][going])
-        for name, values in vars(state).items():
-            setattr(state, name, values[going])
+    rays = _Rays(surface, trail.part(rows), origins[rows], directions[rows])
+    state = _started(rays)
+    for _ in range(ROUNDS):
+        behind = _stepped(rays, state)
+        rows, rays, state = rows[behind], rays.part(behind), state.part(behind)
+        found, normal = _narrowed(rays, state)
+        hit = np.isfinite(found)
+        distance[rows[hit]], normals[rows[hit]] = found[hit], normal[hit]
+        rows, rays, state = rows[~hit], rays.part(~hit), state.part(~hit)
     return distance, normals
 
 
-def _look(surface: Surface, trail: Trail, s: Float, origins: Float, directions: Float) -> _Look:
-    view = surface.view
-    pixel, reached = trail.at(s)
-    with np.errstate(invalid="ignore"):
-        nearest = np.rint(pixel)
-        if view.projection == "latlong":
-            nearest[:, 0] %= view.width
-        limit = np.array([view.width - 1, view.height - 1])
-        inside = (np.abs(pixel - limit / 2) <= limit / 2 + 0.501).all(axis=1)
-        column, row = np.nan_to_num(np.clip(nearest, 0, limit)).astype(np.int64).T
-        inside &= surface.valid[row, column]
-        depth = np.where(inside, surface.depth[row, column], np.nan)
-        normal = surface.normal[row, column]
-        facing = np.einsum("ni,ni->n", normal, directions)
-        height = np.einsum("ni,ni->n", normal, surface.position[row, column] - origins)
-        plane = np.where(inside & (facing < 0) & (height < 0), height / facing, np.nan)
-        met = trail.at(trail.s_of(plane))[0]
-        own = apart(view, pixel, met) <= NEAR_PX
-        return _Look(pixel, depth, normal, ~(depth <= reached), plane, own)
+def _started(rays: _Rays) -> _State:
+    trail = rays.trail
+    steps = np.full(len(trail.tau), float(STEPS))
+    if trail.view.projection == "pinhole":
+        length = apart(trail.view, trail.at(trail.first)[0], trail.at(trail.last)[0])
+        steps = np.clip(length, 1, STEPS)
+    _, _, depth, reached = rays.pixels(trail.first)
+    step = (trail.last - trail.first) / steps
+    return _State(step, trail.first.copy(), trail.first.copy(), ~(depth <= reached), depth)
 
 
-def _advance(state: _State, trail: Trail, look: _Look, number: int) -> Bool:
-    """Moves the rays on by what was looked at; (n,) those that are not done."""
-    state.distance[look.own], state.normal[look.own] = look.plane[look.own], look.normal[look.own]
-    going = ~look.own
-    seen = np.isfinite(look.depth)
-    opens = going & ~state.closed & state.front & ~look.in_front
-    behind, before = (
-        opens | (state.closed & ~look.in_front),
-        ~opens & ~(state.closed & ~look.in_front),
-    )
-    state.high[behind], state.high_pixel[behind] = state.s[behind], look.pixel[behind]
-    state.high_depth[behind] = look.depth[behind]
-    state.planes[behind], state.plane_normal[behind] = look.plane[behind], look.normal[behind]
-    state.low[before], state.low_pixel[before] = state.s[before], look.pixel[before]
-    known = before & seen
-    state.low_depth[known] = look.depth[known]
-    moved = ~state.closed & ~opens
-    state.front[moved] = look.in_front[moved]
-    state.closed |= opens
-    going &= ~_settle(state, trail, going)
-    ended = ~state.closed & (state.low >= trail.last)
-    state.s = _next(state, trail, look, number)
-    return going & ~ended
+def _stepped(rays: _Rays, state: _State) -> NDArray[np.int64]:
+    """Moves rays on until they go behind something, whose numbers are returned, or end."""
+    going = np.arange(len(state.low))
+    behind: list[NDArray[np.int64]] = []
+    # One more than there are steps: their sum may end a rounding error before the last place.
+    for _ in range(STEPS + 1):
+        going = going[state.low[going] < rays.trail.last[going]]
+        part, old = rays.part(going), state.part(going)
+        s = np.minimum(old.low + old.step, part.trail.last)
+        _, _, depth, reached = part.pixels(s)
+        front = ~(depth <= reached)
+        gone = old.front & ~front
+        state.high[going[gone]] = s[gone]
+        behind.append(going[gone])
+        kept = ~gone
+        going = going[kept]
+        state.low[going], state.front[going] = s[kept], front[kept]
+        state.depth[going] = np.where(np.isfinite(depth), depth, old.depth)[kept]
+    return np.concatenate(behind)
 
 
-def _settle(state: _State, trail: Trail, going: Bool) -> Bool:
-    """Ends intervals shorter than a pixel; (n,) where that is a hit."""
-    narrow = state.closed & going
-    narrow &= apart(trail.view, state.low_pixel, state.high_pixel) < 1
-    with np.errstate(invalid="ignore"):
-        nearer = np.minimum(state.low_depth, state.high_depth)
-        joined = np.abs(state.low_depth - state.high_depth) <= MAX_JUMP * nearer
-    hit, past = narrow & joined, narrow & ~joined
-    ends = trail.distance(state.low), trail.distance(state.high)
-    plane = np.where(np.isfinite(state.planes), state.planes, 0.5 * (ends[0] + ends[1]))
-    state.distance[hit] = np.clip(plane, *ends)[hit]
-    state.normal[hit] = state.plane_normal[hit]
-    state.closed[past], state.front[past] = False, False
-    state.low[past], state.low_pixel[past] = state.high[past], state.high_pixel[past]
-    return hit
+def _narrowed(rays: _Rays, state: _State) -> tuple[Float, Float]:
+    """Metres (n,) to hits between `low` and `high` and their normals; inf for edges, which the rays
+    have then passed.
+    """
+    n = len(state.low)
+    inner = state.part(np.arange(n))
+    distance, normals, going = np.full(n, np.inf), np.full((n, 3), np.nan), np.arange(n)
+    ends = [rays.trail.at(s)[0] for s in (state.low, state.high)]
+    s = state.high.copy()
+    for number in range(LOOKS):
+        part, now = rays.part(going), inner.part(going)
+        place, pixel, depth, reached = part.pixels(s)
+        plane, normal = _plane(part, pixel, depth)
+        own = apart(part.trail.view, place, part.trail.at(part.trail.s_of(plane))[0]) <= NEAR_PX
+        front = ~(depth <= reached)
+        moves = [(s > now.low) & (s <= now.high) & side for side in (front, ~front)]
+        now.low, now.high = np.where(moves[0], s, now.low), np.where(moves[1], s, now.high)
+        for end, move in zip(ends, moves, strict=True):
+            end[move] = place[move]
+        joined = np.abs(now.depth - depth) <= MAX_JUMP * np.minimum(now.depth, depth)
+        now.depth = np.where(moves[0] & np.isfinite(depth), depth, now.depth)
+        narrow = apart(part.trail.view, *ends) < 1
+        touched = narrow & ~front & joined & ~own
+        between = _between(part.trail, now, plane)
+        hit = own | touched
+        distance[going[hit]] = np.where(own, plane, between)[hit]
+        normals[going[hit]] = normal[hit]
+        inner.put(going, now)
+        cut, middle = part.trail.s_of(plane), 0.5 * (now.low + now.high)
+        # Where a ray grazes, depths of whole pixels cross it beside its true place: the first cut
+        # may lie outside. Every third time in the middle: cuts with one side alone may creep.
+        beyond = now.step if number == 0 else 0.0
+        within = (cut > now.low - beyond) & (cut < now.high + beyond) & (number % 3 != 2)
+        s = np.where(within, cut, middle)
+        # Where the nearer end was looked at last, the farther one says once more what is there.
+        s = np.where(narrow & front, now.high, s)
+        kept = ~hit & ~(narrow & ~front)
+        going, s, ends = going[kept], s[kept], [end[kept] for end in ends]
+    edge = ~np.isfinite(distance)
+    state.low[edge], state.front[edge] = state.high[edge], False
+    return distance, normals
 
 
-def _next(state: _State, trail: Trail, look: _Look, number: int) -> Float:
-    """(n,) where to look next."""
-    middle = 0.5 * (state.low + state.high)
-    cut = trail.s_of(look.plane)
-    with np.errstate(invalid="ignore"):
-        # Every third time in the middle: cuts with one side alone may creep.
-        within = (cut > state.low) & (cut < state.high) & (number % 3 != 2)
-    inside = np.where(within, cut, middle)
-    return np.where(state.closed, inside, np.minimum(state.low + state.step, trail.last))
+def _between(trail: Trail, state: _State, plane: Float) -> Float:
+    """Metres (n,) to hits in an interval of less than a pixel: to the plane, if it is near."""
+    width = state.high - state.low
+    low, high = (trail.distance(s) for s in (state.low - width, state.high + width))
+    middle = trail.distance(state.low + 0.5 * width)
+    return np.where(np.isfinite(plane), np.clip(plane, np.maximum(low, 0), high), middle)
+
+
+def _plane(rays: _Rays, pixel: NDArray[np.int64], depth: Float) -> tuple[Float, Float]:
+    """Metres (n,) along the rays to the planes of pixels, NaN where they are not met from their
+    front or there is none; and their normals.
+    """
+    normal = rays.surface.normal[pixel[0], pixel[1]]
+    reach = rays.surface.position[pixel[0], pixel[1]] - rays.origins
+    with np.errstate(invalid="ignore", divide="ignore"):
+        facing = np.einsum("ni,ni->n", normal, rays.directions)
+        height = np.einsum("ni,ni->n", normal, reach)
+        met = np.isfinite(depth) & (facing < 0) & (height < 0)
+        return np.where(met, height / facing, np.nan), normal

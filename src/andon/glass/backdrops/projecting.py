@@ -15,8 +15,8 @@ Float = NDArray[np.float64]
 def moved_pixels(view: View, points: Float, moves: Float, /) -> tuple[Float, Float]:
     """Pixels (n, 2) of camera-frame `points` (n, 3); (n, k, 2) pixels per move (n, k, 3) of them.
 
-    The moves are derivatives: not what a long one gives. NaN behind a pinhole and where every
-    azimuth is as good: straight behind a fisheye, at the poles of a latlong picture.
+    The moves are derivatives: not what a long one gives. NaN behind a pinhole and straight behind a
+    fisheye.
     """
     pixels = view.project(points)
     x, y, z = points[:, None, 0], points[:, None, 1], points[:, None, 2]

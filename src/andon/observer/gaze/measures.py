@@ -22,7 +22,7 @@ LONGEST_LAG_SECONDS = 1.0
 def rests(recording: GazeRecording, good: NDArray[np.bool_], /) -> Float:
     """(k, 2) first and last time of each span in which both eyes rest on one direction.
 
-    By dispersion (I-DT, Salvucci & Goldberg 2000): longest spans of good samples in which the
+    By dispersion (Salvucci & Goldberg 2000, I-DT): longest spans of good samples in which the
     middle of both directions moves by at most 1° across and up together, for at least 0.2 s. The
     vergence plays no part in it, so its noise can be measured there.
     """

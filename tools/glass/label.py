@@ -22,11 +22,11 @@ def label(width: int) -> NDArray[np.uint8]:
     cover = Image.new("L", (w, h), 0)
     accent = Image.new("L", (w, h), 0)
     draw, second = ImageDraw.Draw(cover), ImageDraw.Draw(accent)
-    _word(draw, "ANDON", w / 2, 0.50 * h, 0.200 * h)
-    _word(second, "SOLID GLASS", w / 2, 0.345 * h, 0.056 * h)
-    _word(second, "150 mm   n = 1.51", w / 2, 0.655 * h, 0.056 * h)
-    for v in (0.285, 0.715):
-        second.rectangle([0.34 * w, (v - 0.007) * h, 0.66 * w, (v + 0.007) * h], fill=255)
+    _word(draw, "ANDON", w / 2, 0.50 * h, 0.135 * h)
+    _word(second, "SOLID GLASS", w / 2, 0.39 * h, 0.042 * h)
+    _word(second, "150 mm   n = 1.51", w / 2, 0.61 * h, 0.042 * h)
+    for v in (0.335, 0.665):
+        second.rectangle([0.39 * w, (v - 0.007) * h, 0.61 * w, (v + 0.007) * h], fill=255)
     first, other = (np.asarray(layer, np.float64) / 255 for layer in (cover, accent))
     both = np.maximum(first, other)
     share = np.divide(other, first + other, out=np.zeros_like(both), where=first + other > 0)

@@ -1,10 +1,9 @@
 """Real glass: whole pictures that Mitsuba's path tracer takes through a thin lens.
 
 What is seen through the glass shines by itself, as a picture on a plane does in Andon; lamps are
-small luminous balls, so that glass mirrors them, and light the label; the rest of the surroundings
-is of one luminance. Light that lamps send through glass (caustics) is left out: lamps are met by
-mirrored rays and light diffuse things directly, and nothing in these pictures is diffuse but the
-label.
+luminous balls as wide as the lobe of the glass's highlights, so that glass mirrors them, and light
+the label; the rest of the surroundings is of one luminance. Light that lamps send through glass
+(caustics) is left out: nothing in these pictures is diffuse but the label.
 """
 
 from __future__ import annotations
@@ -29,7 +28,6 @@ Float = NDArray[np.float64]
 # A label floats this far above the glass, metres. Mitsuba moves the starts of its rays by 0.1 mm,
 # so a nearer one would let rays into the glass without refraction.
 LABEL_M = 4e-4
-LAMP_RADIUS_M = 0.01
 MAX_DEPTH = 12
 
 
@@ -96,19 +94,28 @@ def _document(solids: Sequence[Solid], around: Surroundings) -> dict[str, Any]:
         if solid.sticker is not None:
             document[f"label{number}"] = _label(solid)
     for number, lamp in enumerate(around.lamps):
-        light = np.asarray(lamp.intensity_cd) / (np.pi * LAMP_RADIUS_M**2)
+        radius = _lamp_radius_m(lamp, solids[0])
+        light = np.asarray(lamp.intensity_cd) / (np.pi * radius**2)
         document[f"lamp{number}"] = {
             "type": "sphere",
-            "radius": LAMP_RADIUS_M,
+            "radius": radius,
             "center": np.asarray(lamp.position_m, float).tolist(),
             "emitter": {"type": "area", "radiance": {"type": "rgb", "value": light.tolist()}},
         }
     return document
 
 
+def _lamp_radius_m(lamp: PointLamp, solid: Solid) -> float:
+    """Of a ball whose solid angle is that of Phong's lobe, 2π/(m + 1), seen from the glass."""
+    distance = float(np.linalg.norm(lamp.position_m - solid.world_from_glass[:3, 3]))
+    return distance * float(np.sqrt(2 / (solid.highlight_exponent + 1)))
+
+
 def _shining(backdrop: Backdrop, white_cd_m2: float) -> dict[str, Any]:
     if backdrop.picture is None:
         raise InputError("must be of kind texture for the path tracer", field="background.kind")
+    if not backdrop.picture.any():
+        return rectangle(backdrop)  # an emitter without light makes the path tracer divide by 0
     # Mitsuba's rectangle has row 0 at its lower edge.
     radiance = _texture(white_cd_m2 * backdrop.picture[::-1].astype(np.float64))
     return rectangle(backdrop) | {"emitter": {"type": "area", "radiance": radiance}}

@@ -50,6 +50,7 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        caustic,
         harmonics,
         lampshade,
         penumbra,
@@ -73,4 +74,5 @@ def rows() -> tuple[Row, ...]:
         *harmonics.ROWS,
         *probe_light.ROWS,
         *probe_space.ROWS,
+        *caustic.ROWS,
     )

@@ -50,6 +50,7 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        caustic,
         gaze,
         glass,
         glass_blur,
@@ -79,4 +80,5 @@ def rows() -> tuple[Row, ...]:
         *gaze.ROWS,
         *glass.ROWS,
         *glass_blur.ROWS,
+        *caustic.ROWS,
     )

@@ -164,7 +164,8 @@ def _shifts(pair: _Pair) -> list[NDArray[np.float64]]:
     x, y = cv2.createAlignMTB(PYRAMID_LEVELS).calculateShift(*pair.greys)
     near, far = pair.ranks
     window = cv2.createHanningWindow(near.shape[::-1], cv2.CV_32F)
-    moved = np.array(cv2.phaseCorrelate(near, far, window)[0]) / pair.scale
+    # OpenCV lays its window over the pictures themselves where their size suits it.
+    moved = np.array(cv2.phaseCorrelate(near.copy(), far.copy(), window)[0]) / pair.scale
     return [np.array([[1.0, 0, dx], [0, 1.0, dy]]) for dx, dy in ((-x, -y), np.round(moved))]
 
 

@@ -53,6 +53,7 @@ def rows() -> tuple[Row, ...]:
         gaze,
         glass,
         glass_blur,
+        glass_frame,
         harmonics,
         lampshade,
         penumbra,
@@ -79,4 +80,5 @@ def rows() -> tuple[Row, ...]:
         *gaze.ROWS,
         *glass.ROWS,
         *glass_blur.ROWS,
+        *glass_frame.ROWS,
     )

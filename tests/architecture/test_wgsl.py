@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from andon.engines.gpu import RECEIVERS
-from andon.glass.model import Ball, Closed, LensShape, Slab, Solid, Sticker
+from andon.glass.backdrops.records import KINDS, backdrop_variants
+from andon.glass.model import Backdrop, Ball, Closed, LensShape, Slab, Solid, Sticker
 from andon.glass.plan import variants_of
 from andon.gpu import wgsl
 from andon.gpu.layout import HostStruct
@@ -77,6 +78,11 @@ def placed(*shapes, **options):
     return variants_of([Solid("glass", shape, sticker=STUCK, **options) for shape in shapes])
 
 
+def looked_at(*kinds, projection="pinhole"):
+    solids = [Solid("glass", Ball(1.0), backdrop=Backdrop(kind)) for kind in kinds]
+    return variants_of(solids) | backdrop_variants(solids, projection)
+
+
 PROJECTION = "andon/gbuffer/projections/{}.wgsl"
 VARIANTS = {
     "as written": {},
@@ -99,6 +105,11 @@ VARIANTS = {
     "a ball's one interface": placed(SOLIDS["a ball"], interfaces=1),
     "glass of all shapes, dispersing": placed(*SOLIDS.values(), index=(1.5, 1.51, 1.52)),
     **{name: placed(shape) for name, shape in SOLIDS.items()},
+    **{f"glass before the {kind}": looked_at(kind) for kind in KINDS},
+    **{
+        f"glass before all kinds, {name}": looked_at(*KINDS, projection=name)
+        for name in ("fisheye", "latlong")
+    },
     "probes of objects": PROBE_VARIANTS["object"],
 }
 

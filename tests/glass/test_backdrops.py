@@ -6,6 +6,7 @@ import pytest
 from andon.glass.backdrops.environment import environment_of
 from andon.glass.backdrops.march import march
 from andon.glass.backdrops.model import FAR_M, Footprint, SceneOfView
+from andon.glass.backdrops.paper import blur_metres, preblurred, taps_of
 from andon.glass.backdrops.projecting import moved_pixels
 from andon.glass.backdrops.pyramids import MAX_LEVEL, pyramid, sampled
 from andon.glass.backdrops.reference import environment_light, look, sticker_at
@@ -368,3 +369,47 @@ def test_no_light_is_negative():
     light = environment_light(around, unit(np.random.default_rng(2).normal(size=(500, 3))))
     assert light.min() == 0
     assert light.max() > 0
+
+
+# ── the paper's blur ────────────────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize(("kernel", "total"), [(1.0, 0.32), (8.0, 0.95)])
+def test_the_printed_weights_do_not_sum_to_one(kernel, total):
+    """Equation 4 with its 1/2πσ²; ours are the same weights, normalised."""
+    taps = np.arange(-int(kernel / 2), int(kernel / 2) + 1)
+    printed = np.exp(-(taps**2) / kernel)[:, None] * np.exp(-(taps**2) / kernel) / (np.pi * kernel)
+    assert printed.sum() == pytest.approx(total, abs=0.005)
+    ours = np.concatenate([taps_of(kernel)[:0:-1], taps_of(kernel)])
+    assert_agree(np.outer(ours, ours), printed / printed.sum(), rtol=1e-12)
+
+
+def test_the_papers_blur_of_its_own_scene():
+    """Looking at the ball 0.4 m away, with 6 mm of pupil: 3.0 mm on the background at 0.6 m."""
+    assert blur_metres(0.006, 0.6, 0.4) == pytest.approx(0.003)
+    assert blur_metres(0.006, 0.6, 0.6) == 0
+    assert blur_metres(0.006, 0.6, np.inf) == 0.006
+
+
+@pytest.mark.parametrize("kernel", [1.0, 2.0, 7.3, 30.0])
+def test_a_blurred_point_has_half_the_kernel_as_variance(kernel):
+    """K_g/2 texels², but for what the window cuts off; and the light is kept."""
+    point = np.zeros((101, 101, 1))
+    point[50, 50] = 1
+    blurred = preblurred(point, 1000.0, kernel / 1000)[..., 0]
+    assert blurred.sum() == pytest.approx(1)
+    places = np.arange(101) - 50
+    variance = (blurred.sum(axis=0) * places**2).sum()
+    # The window cuts a Gaussian at √(K_g/2) of its σ: 3.9 of them at 30, 2 at 8.
+    assert variance < kernel / 2
+    if kernel >= 30:
+        assert variance == pytest.approx(kernel / 2, rel=0.01)
+    assert np.flatnonzero(blurred.sum(axis=1)).max() - 50 == int(kernel / 2)
+
+
+def test_kernels_below_a_texel_are_no_blur():
+    picture = np.random.default_rng(1).random((5, 6, 3)).astype(np.float32)
+    assert (preblurred(picture, 1000.0, 0.00099) == picture).all()
+    assert (preblurred(picture, 1000.0, 0.0) == picture).all()
+    uniform = np.full((9, 8, 3), 3.0)
+    assert_agree(preblurred(uniform, 1.0, 20.0), uniform, rtol=1e-12)

@@ -1,14 +1,18 @@
 """Backdrops: shaders against the reference, function by function."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from andon.gbuffer import STRUCTS as VIEW_STRUCTS
 from andon.gbuffer import pack_surface, pack_view, projection_variant
 from andon.glass.backdrops.atlas import make_atlas, spread_levels
-from andon.glass.backdrops.buffers import BackdropBuffers, FrameLevels
+from andon.glass.backdrops.buffers import BackdropBuffers
 from andon.glass.backdrops.environment import environment_of
+from andon.glass.backdrops.levels import FrameLevels
 from andon.glass.backdrops.model import FAR_M
+from andon.glass.backdrops.paper import preblurred
 from andon.glass.backdrops.pyramids import pyramid
 from andon.glass.backdrops.records import STRUCTS, backdrop_variants
 from andon.glass.backdrops.reference import environment_light, look, sticker_at
@@ -239,6 +243,67 @@ def test_levels_of_the_frame(gpu, size):
     spread_levels(expected, levels.place, pyramid(picture))
     # Half floats, some drivers cut instead of rounding: 2⁻¹⁰ a level.
     assert_agree(actual, expected, atol=len(pyramid(picture).levels) * 2.0**-11)
+
+
+def points(shape, width):
+    """White points on black; at wide blurs none near the border, where coarser levels go on."""
+    picture = np.zeros((*shape, 3))
+    picture[np.random.default_rng(1).random(shape) < 0.01] = 1000
+    if width > 32:
+        inner = picture[8:-8, 8:-8].copy()
+        picture[:] = 0
+        picture[8:-8, 8:-8] = inner
+    return picture
+
+
+def board(shape, _):
+    rows, columns = np.indices(shape) // 7
+    return np.repeat(((rows + columns) % 2)[..., None] * 1000.0, 3, axis=2)
+
+
+# Share of the largest luminance, where the blur is made in a coarser level: points lie in the
+# middle of its texels then, by half a texel of σ/4 off; of a board only the corners differ by more
+# than 0.02. Narrower blurs agree as half floats do.
+COARSE = {points: 0.15, board: 0.06}
+
+
+@pytest.mark.parametrize("pattern", COARSE)
+@pytest.mark.parametrize("kernel", [0.0, 0.9, 1.0, 3.0, 8.0, 31.0, 33.0, 60.0, 200.0])
+def test_the_papers_blur_of_the_frame(gpu, kernel, pattern):
+    width, height = 150, 110
+    picture = pattern((height, width), kernel)
+    frame = make_texture(gpu, "rgba16float", width, height)
+    frame.write(np.dstack([picture, np.ones((height, width))]))
+    levels = FrameLevels(gpu, frame, blurs=True)
+    for asked in (60.0, kernel):
+        encoder = gpu.device.create_command_encoder()
+        levels.encode(encoder, asked)
+        gpu.device.queue.submit([encoder.finish()])
+    actual = levels.texture.read()[..., :3].astype(np.float64)
+    blurred = preblurred(picture, 1.0, kernel)
+    expected = np.zeros((*actual.shape[:2], 4))
+    spread_levels(expected, levels.place, pyramid(np.dstack([blurred, blurred[..., :1]])))
+    share = 2e-3 if kernel < 32 else COARSE[pattern]
+    assert_agree(actual, expected[..., :3], atol=share * blurred.max())
+
+
+def test_the_papers_blur_of_a_picture(gpu):
+    """In the atlas, one body's picture and not the other's."""
+    picture = photograph(3, (64, 96))
+    backdrops = [replace(PICTURE, picture=picture)] * 2
+    solids = tuple(Solid(str(k), Ball(1.0), backdrop=b) for k, b in enumerate(backdrops))
+    buffers = BackdropBuffers(gpu, solids, np.zeros((2, 9, 3)), 1.0, blurs=True)
+    before = buffers.atlas.read().astype(np.float64)
+    encoder = gpu.device.create_command_encoder()
+    buffers.encode_blur(encoder, 1, 9.0)
+    gpu.device.queue.submit([encoder.finish()])
+    after = buffers.atlas.read().astype(np.float64)
+    blurred = preblurred(picture, 3.0, 3.0)
+    for index, expected in enumerate((picture, blurred)):
+        place = make_atlas(solids, 8192).backdrops[index]
+        rows, columns = (slice(a, a + n) for a, n in ((place.row, 64), (place.column, 96)))
+        assert_agree(after[rows, columns, :3], expected, atol=2e-3)
+    assert (before != after).any()
 
 
 def test_pictures_that_are_too_large_are_halved():

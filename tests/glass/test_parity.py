@@ -120,8 +120,8 @@ def pencil_columns(pencil):
 
 
 PENCIL = """
-  let place = mat4x3f(x[0].xyz, x[1].xyz, x[2].xyz, x[3].xyz);
-  let p = Pencil(place, mat4x3f(x[4].xyz, x[5].xyz, x[6].xyz, x[7].xyz));
+  let places = mat4x3f(x[0].xyz, x[1].xyz, x[2].xyz, x[3].xyz);
+  let p = Pencil(places, mat4x3f(x[4].xyz, x[5].xyz, x[6].xyz, x[7].xyz));
   let D = x[8].xyz; let N = x[9].xyz; let c1 = -dot(D, N);
   let C = mat3x3f(x[10].xyz, x[11].xyz, x[12].xyz);
   let bend_out = sqrt(1.0 - (1.0 - c1 * c1) / (1.51 * 1.51));

@@ -6,7 +6,7 @@ import pytest
 from andon.gbuffer import STRUCTS, pack_surface, pack_view
 from andon.glass import paths, pencils
 from andon.glass.backdrops.buffers import BackdropBuffers
-from andon.glass.model import Backdrop, Ball, LensShape, Slab, Solid, Sticker
+from andon.glass.model import Backdrop, Ball, Highlight, LensShape, Slab, Solid, Sticker
 from andon.glass.screen import outline_of, rectangle_of
 from andon.glass.trace_stage import SolidBuffers, TraceStage
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
@@ -50,10 +50,9 @@ def scene_surface(depth):
 class Drawn:
     """Layers of `solids`, as arrays."""
 
-    def __init__(self, gpu, solids, depth=None, view=VIEW, lamps=((), ()), environment=0.0):
+    def __init__(self, gpu, solids, depth=None, view=VIEW, lamps=(), environment=0.0):
         shared = SolidBuffers(gpu, solids)
-        if len(lamps[0]):
-            shared.write_highlights(np.array(lamps[0]), np.array(lamps[1]))
+        shared.write_highlights(lamps)
         harmonics = np.zeros((len(solids), 9, 3))
         harmonics[:, 0] = environment / 0.282094791773878
         backdrops = BackdropBuffers(gpu, solids, harmonics, 1.0)
@@ -158,7 +157,7 @@ def test_a_lamp_is_mirrored_where_it_should_be(gpu):
     """Phong's lobe: its peak is where the mirrored ray meets the lamp, and there F·E·(m + 1)/2π."""
     lamp, candela = np.array([0.3, 0.4, 0.5]), 100.0
     solids = [solid(Ball(0.075), highlight_exponent=200.0)]
-    lit = Drawn(gpu, solids, lamps=([[*lamp, 1.0]], [[candela] * 3]))
+    lit = Drawn(gpu, solids, lamps=[Highlight(0, lamp, np.full(3, candela))])
     dark = Drawn(gpu, solids)
     ours = (lit.reflected - dark.reflected)[..., 1]
     truth = traced(solids)

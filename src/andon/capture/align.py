@@ -6,8 +6,9 @@ steps are put together towards the middle one.
 ==========  ===================================================  ==================================
 method      finds                                                source
 ==========  ===================================================  ==================================
-shift       whole pixels, by bitmaps of what is brighter than    Ward 2003
-            the median: no response is needed
+shift       whole pixels: the better of bitmaps of what is       Ward 2003
+            brighter than the median and of phase correlation,
+            if it is better than none
 ecc         shift and turn, to fractions of a pixel, by the      Evangelidis & Psarakis 2008
             correlation of ranks (which a response keeps)
 **auto**    ecc from where shift ends, where the ranks then
@@ -45,8 +46,8 @@ STILL_PX = 0.5
 PYRAMID_LEVELS = 6
 ECC_STEPS, ECC_END = 100, 1e-6
 # Of `auto`: a motion has to explain this share of what the ranks at rest disagree by (resampling
-# alone explains a tenth, by averaging noise), and to leave this share of the picture in both.
-LEAST_GAIN = 0.25
+# alone explains up to a third, by averaging noise), and to leave this share of the picture in both.
+LEAST_GAIN = 0.5
 LEAST_SHARE = 0.25
 
 
@@ -129,18 +130,16 @@ def _step(pair: _Pair, method: Alignment, name: str) -> NDArray[np.float64]:
     """(2, 3) pixel of the second photograph from pixel of the first."""
     import cv2
 
-    x, y = cv2.createAlignMTB(PYRAMID_LEVELS).calculateShift(*pair.greys)
-    shift = np.array([[1.0, 0, -x], [0, 1.0, -y]])
-    if method == "shift":
-        return shift
     still = pair.agreement(STILL)
     # Bitmaps of a nearly black photograph are of its noise, and give any shift.
-    start = shift if pair.agreement(shift) > still else STILL
+    start = max((STILL, *_shifts(pair)), key=pair.agreement)
+    if method == "shift":
+        return start
     try:
         found = _by_correlation(pair, start)
     except cv2.error as error:
         if method == "auto":
-            return start
+            return _if_better(pair, start, still)
         raise InputError(
             "cannot be aligned: it shows too little of what its neighbour in exposure shows",
             file=name,
@@ -149,9 +148,25 @@ def _step(pair: _Pair, method: Alignment, name: str) -> NDArray[np.float64]:
         ) from error
     if method == "ecc":
         return found
-    best = max((start, found), key=pair.agreement)
-    gained = (pair.agreement(best) - still) / max(1 - still, 1e-12)
-    return best if gained > LEAST_GAIN else STILL
+    return _if_better(pair, max((start, found), key=pair.agreement), still)
+
+
+def _if_better(pair: _Pair, matrix: NDArray[np.float64], still: float) -> NDArray[np.float64]:
+    """The motion, if it explains enough of the disagreement at rest; else none."""
+    gained = (pair.agreement(matrix) - still) / max(1 - still, 1e-12)
+    return matrix if gained > LEAST_GAIN else STILL
+
+
+def _shifts(pair: _Pair) -> list[NDArray[np.float64]]:
+    """Whole shifts that may be: by Ward's bitmaps, and by the phases of the ranks' spectra."""
+    import cv2
+
+    x, y = cv2.createAlignMTB(PYRAMID_LEVELS).calculateShift(*pair.greys)
+    near, far = pair.ranks
+    window = cv2.createHanningWindow(near.shape[::-1], cv2.CV_32F)
+    # OpenCV lays its window over the pictures themselves where their size suits it.
+    moved = np.array(cv2.phaseCorrelate(near.copy(), far.copy(), window)[0]) / pair.scale
+    return [np.array([[1.0, 0, dx], [0, 1.0, dy]]) for dx, dy in ((-x, -y), np.round(moved))]
 
 
 def _by_correlation(pair: _Pair, start: NDArray[np.float64]) -> NDArray[np.float64]:

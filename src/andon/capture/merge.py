@@ -37,8 +37,10 @@ MIDDLE = 128  # Debevec & Malik's anchor: g(128) = 0
 SMOOTHNESS = 50.0
 # Equations from photographs; Debevec & Malik ask for more than there are codes.
 EQUATIONS = 4000
-# Residuals beyond so many robust standard deviations are things that moved, or dirt.
-OUTLIER = 3.0
+# Pixels whose worst residual exceeds the median's so many times are things that move, or dirt;
+# those of fewer codes than the least are noise.
+OUTLIER, LEAST_OUTLIER_CODES = 3.0, 6.0
+ROUNDS = 3
 HAT = np.minimum(np.arange(CODES), CODES - 1 - np.arange(CODES)).astype(np.float64)
 
 
@@ -67,8 +69,8 @@ class Merged:
 def recover_response(bracket: Bracket, /) -> Float:
     """(256, 3), g = ln of the exposure (light × time) that makes each code; g(128) = 0, rising.
 
-    Least squares of g(Z) = ln E + ln t with hat weights and a smooth g, per channel; once again
-    without outliers. Source: Debevec & Malik 1997, equation 3.
+    Least squares of g(Z) = ln E + ln t with hat weights and a smooth g, per channel, repeated
+    without the pixels that do not fit. Source: Debevec & Malik 1997, equation 3.
     """
     samples = _samples(bracket)
     logs = np.log(_seconds(bracket))
@@ -131,12 +133,13 @@ def _curve(codes: NDArray[np.int64], log_seconds: Float) -> Float:
     """g of one channel from (n, photographs) codes."""
     weights = HAT[codes]
     curve, light = _solved(codes, log_seconds, weights)
-    residual = curve[codes] - light[:, None] - log_seconds
-    used = weights > 0
-    if used.any():
-        spread = 1.4826 * np.median(np.abs(residual[used]))
-        kept = np.where(np.abs(residual) <= OUTLIER * max(spread, 1e-6), weights, 0.0)
-        curve, _ = _solved(codes, log_seconds, kept)
+    for _ in range(ROUNDS):
+        # In codes, in which noise is the same everywhere: logarithms of dark ones spread.
+        slope = np.maximum(np.gradient(curve), 1e-4)[codes]
+        residual = np.abs(curve[codes] - light[:, None] - log_seconds) / slope
+        worst = np.where(weights > 0, residual, 0.0).max(axis=1)
+        fits = worst <= max(OUTLIER * 1.4826 * float(np.median(worst)), LEAST_OUTLIER_CODES)
+        curve, light = _solved(codes, log_seconds, weights * fits[:, None])
     # Codes that no photograph has are bent by their neighbours alone: a curve that falls is none.
     rising = np.maximum.accumulate(curve[MIDDLE:])
     falling = np.minimum.accumulate(curve[: MIDDLE + 1][::-1])[::-1]

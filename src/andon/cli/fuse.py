@@ -24,6 +24,8 @@ __all__ = ["FuseOptions", "run"]
 PICTURES, LIGHT = (".png", ".jpg", ".jpeg"), (".exr", ".hdr")
 SHEET_COLUMNS = 4
 SHEET_WIDTH_PX = 320
+# Shares that are not 0.00 % when printed.
+LEAST_NOTED = 5e-5
 
 
 @dataclass(frozen=True)
@@ -213,12 +215,11 @@ def _write_picture(options: FuseOptions, bracket: Bracket) -> tuple[Any, list[st
 
 
 def _write_light(options: FuseOptions, bracket: Bracket) -> tuple[Any, list[str]]:
-    """The merged light, and the picture of it for a sheet."""
+    """The merged light, and for a sheet the fusion of what it would show at each exposure."""
     from andon.capture.merge import merge
-    from andon.display.fusion import fused_codes
-    from andon.display.model import Exposure
+    from andon.display.fusion import fuse
     from andon.files.pictures import write_exr, write_hdr
-    from andon.responses import SRGB
+    from andon.responses import srgb_encode
 
     merged = merge(bracket)
     if options.out.suffix.lower() == ".exr":
@@ -227,9 +228,10 @@ def _write_light(options: FuseOptions, bracket: Bracket) -> tuple[Any, list[str]
         write_hdr(options.out, merged.linear)
     if options.response is not None:
         _write_response(options.response, merged)
-    white = 1 / max(float(np.percentile(merged.linear, 99.5)), 1e-30)
-    tone = Exposure(white * 8, "fusion")
-    return fused_codes(merged.linear, tone, SRGB, 1.0), _on_light(merged, bracket)
+    assert bracket.seconds is not None  # by check_exposures
+    gains = bracket.seconds / bracket.seconds[bracket.middle]
+    shown = [srgb_encode(np.clip(merged.linear * gain, 0, 1)) for gain in gains]
+    return fuse(shown), _on_light(merged, bracket)
 
 
 def _on_light(merged: Merged, bracket: Bracket) -> list[str]:
@@ -242,7 +244,7 @@ def _on_light(merged: Merged, bracket: Bracket) -> list[str]:
         (merged.black_share, "are black in every photograph: a longer exposure is missing"),
         (merged.unseen_share, "are border in every photograph, and black"),
     ):
-        if share > 0:
+        if share >= LEAST_NOTED:
             lines.append(f"{share:.2%} of the pixels {what}")
     return lines
 
@@ -261,7 +263,7 @@ def _write_response(path: Path, merged: Merged) -> None:
 
 
 def _write_sheet(path: Path, bracket: Bracket, picture: Any) -> None:
-    """All photographs from dark to bright, as aligned, and what was made of them."""
+    """All photographs from dark to bright, as aligned, and what was made of them as a picture."""
     import cv2
 
     from andon.display.false_colour import contact_sheet
@@ -282,4 +284,4 @@ def _caption(bracket: Bracket, index: int) -> str:
     if bracket.seconds is None:
         return name
     seconds = float(bracket.seconds[index])
-    return f"{name}, {seconds:.3g} s" if seconds >= 0.3 else f"{name}, 1/{1 / seconds:.3g} s"
+    return f"{name}, {seconds:.3g} s" if seconds >= 0.3 else f"{name}, 1/{1 / seconds:.4g} s"

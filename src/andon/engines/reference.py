@@ -62,13 +62,9 @@ class ReferenceEngine:
         bias = self.prepared.surface.bias
         bias_m: NDArray[np.float64] = np.where(seen.is_object, bias.object_m, bias.real_m)
         names = [body.name for body in moment.bodies]
+        balls = self.prepared.balls
         lux = direct.illuminate(
-            seen,
-            moment.lamps,
-            self._rays,
-            bias_m=bias_m,
-            bodies=names,
-            balls=self.prepared.balls,
+            seen, moment.lamps, self._rays, bias_m=bias_m, bodies=names, balls=balls
         )
         return Illuminance(self._received(seen, lux, moment), self.prepared.photometry)
 

@@ -14,10 +14,10 @@ from andon.glass.defocus.kernels import MAX_BLUR_PX
 from andon.glass.highlights import highlight_luminance
 from andon.glass.layers import Counts, Layered, Layers
 from andon.glass.model import Focus, GlassModel, Highlight
-from andon.glass.silhouette import silhouette
 from andon.glass.paths import LOST, Traced, trace
 from andon.glass.pencils import blur_radians, vergence
 from andon.glass.refraction import against
+from andon.glass.silhouette import silhouette
 
 __all__ = ["frame_blur_px", "layers_of"]
 

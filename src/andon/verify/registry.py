@@ -50,6 +50,7 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        caustic,
         gaze,
         glass,
         glass_blur,
@@ -81,4 +82,5 @@ def rows() -> tuple[Row, ...]:
         *glass.ROWS,
         *glass_blur.ROWS,
         *glass_frame.ROWS,
+        *caustic.ROWS,
     )

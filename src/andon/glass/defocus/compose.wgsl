@@ -48,7 +48,7 @@ fn near(source: texture_2d<f32>, place: vec2i, rows: i32, size: f32) -> Near {
 
 // Light of an image at a pixel, not premultiplied; without coverage what the pyramid goes on with.
 fn seen(
-  source: texture_2d<f32>, enlarged: vec4f, place: vec2i, cover: f32, blurs: bool,
+  source: texture_2d<f32>, enlarged: vec4f, place: vec2i, cover: f32, blurs: bool, nears: bool,
 ) -> vec3f {
   let own = textureLoad(source, place, 0);
   let sharp = own.xyz / max(cover, 1e-6);
@@ -56,6 +56,9 @@ fn seen(
   let share = select(coarser(d, FIRST), 1.0, cover == 0.0);
   if (!blurs) {
     return select(sharp, enlarged.xyz, cover == 0.0);
+  }
+  if (!nears) {
+    return enlarged.xyz;
   }
   let size = size_of(table, min(d, FIRST));
   let rows = near_rows(d, share, size);
@@ -70,18 +73,21 @@ fn seen(
   var cover = own.x;
   if (BLURS.y) {
     let enlarged = coarse(coarse_rim, pixel.xy).xy;
-    let d = diameter(select(own.y, enlarged.y, own.x == 0.0));
-    let share = coarser(d, FIRST);
-    let size = size_of(table, min(d, FIRST));
-    let rows = near_rows(d, share, size);
-    let sum = near(surface, place, rows, size);
-    sheet = select(sheet, sum.light / max(sum.total, 1e-6), rows >= 0);
-    cover = select(cover, sum.cover / max(sum.total, 1e-6), rows >= 0);
+    var share = 1.0;
+    if (NEARS.y) {
+      let d = diameter(select(own.y, enlarged.y, own.x == 0.0));
+      share = coarser(d, FIRST);
+      let size = size_of(table, min(d, FIRST));
+      let rows = near_rows(d, share, size);
+      let sum = near(surface, place, rows, size);
+      sheet = select(sheet, sum.light / max(sum.total, 1e-6), rows >= 0);
+      cover = select(cover, sum.cover / max(sum.total, 1e-6), rows >= 0);
+    }
     sheet = mix(sheet, coarse(coarse_surface, pixel.xy), share);
     cover = saturate(mix(cover, enlarged.x, share));
   }
-  let through = seen(refracted, coarse(coarse_refracted, pixel.xy), place, own.x, BLURS.x);
-  let mirrored = seen(reflected, coarse(coarse_reflected, pixel.xy), place, own.x, BLURS.z);
+  let through = seen(refracted, coarse(coarse_refracted, pixel.xy), place, own.x, BLURS.x, NEARS.x);
+  let mirrored = seen(reflected, coarse(coarse_reflected, pixel.xy), place, own.x, BLURS.z, NEARS.z);
   let light = sheet.xyz + max(cover - sheet.w, 0.0) * through + cover * mirrored;
   return vec4f(max(light, vec3f(0.0)), cover);
 }

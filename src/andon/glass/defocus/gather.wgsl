@@ -94,3 +94,12 @@ fn coarse(source: texture_2d<f32>, texel: vec2f) -> vec4f {
   let cover = mix(sharper(rim, place).x, coarse(coarse_rim, texel.xy).x, share);
   return Sheet(light, vec4f(cover, d, 0.0, 0.0));
 }
+
+// Where no disc is this level's own: the coarser level's answer, enlarged.
+@fragment fn enlarge_image(@builtin(position) texel: vec4f) -> @location(0) vec4f {
+  return coarse(coarse_image, texel.xy);
+}
+
+@fragment fn enlarge_sheet(@builtin(position) texel: vec4f) -> Sheet {
+  return Sheet(coarse(coarse_image, texel.xy), coarse(coarse_rim, texel.xy));
+}

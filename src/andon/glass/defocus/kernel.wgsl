@@ -11,4 +11,6 @@ const IS_GAUSSIAN = false;
 const IS_PAPER = false;
 const LARGEST_PX: f32 = 64.0;
 const STEPS: f32 = 64.0;
+// Of what is refracted, sticks to the surface, is mirrored: blurred at all; discs that are small.
 const BLURS = vec3<bool>(true, true, true);
+const NEARS = vec3<bool>(true, true, true);

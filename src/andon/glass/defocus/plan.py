@@ -10,10 +10,14 @@ from numpy.typing import NDArray
 from andon.glass.defocus.kernels import MAX_BLUR_PX, REACH_SIGMAS, kernel
 from andon.glass.model import Blur
 
-__all__ = ["LEVELS", "DiscPlan", "Rect", "grown", "size_table"]
+__all__ = ["LEVELS", "DiscPlan", "Rect", "Three", "grown", "size_table"]
 
 # x, y, width, height.
 Rect = tuple[int, int, int, int]
+
+# Of what is refracted, sticks to the surface, is mirrored.
+Three = tuple[bool, bool, bool]
+ALL: Three = (True, True, True)
 
 # Levels with discs: half, a quarter and an eighth of the size.
 LEVELS = (1, 2, 3)
@@ -45,10 +49,15 @@ class DiscPlan:
         first = FIRST_PX[self.shape]
         return tuple(n for n in LEVELS if disc_px > 0.85 * first[n - 1])
 
-    def wgsl(self, level: int, blurs: tuple[bool, bool, bool] = (True, True, True), /) -> str:
+    def has_discs(self, level: int, least_px: float, /) -> bool:
+        """Whether a layer with no disc smaller than this has any of the level; 0 is full size."""
+        first = FIRST_PX[self.shape]
+        return level >= len(first) or least_px < first[level]
+
+    def wgsl(self, level: int, blurs: Three = ALL, nears: Three = ALL, /) -> str:
         """The constants that stand in for kernel.wgsl; level 0 is full size."""
         edges = (*FIRST_PX[self.shape], 4 * MAX_BLUR_PX)
-        # Reducing by 1 3 3 1 and enlarging by 3 1 add 3/4 px² each at level 1, 4 times that a level.
+        # Reducing by 1 3 3 1 and enlarging by 3 1 add 3/4 px² each, and 4 times that a level on.
         added = 1.5 * (4**level - 1) / 3 / 4**level
         return "\n".join(
             [
@@ -61,9 +70,14 @@ class DiscPlan:
                 f"const IS_PAPER = {str(self.kind == 'paper').lower()};",
                 f"const LARGEST_PX: f32 = {MAX_BLUR_PX};",
                 f"const STEPS: f32 = {float(STEPS)};",
-                f"const BLURS = vec3<bool>({', '.join(str(b).lower() for b in blurs)});",
+                f"const BLURS = {_booleans(blurs)};",
+                f"const NEARS = {_booleans(nears)};",
             ]
         )
+
+
+def _booleans(three: Three) -> str:
+    return f"vec3<bool>({', '.join(str(each).lower() for each in three)})"
 
 
 def size_table(plan: DiscPlan, /) -> NDArray[np.float32]:
@@ -73,7 +87,7 @@ def size_table(plan: DiscPlan, /) -> NDArray[np.float32]:
 
 
 def grown(rect: Rect, by: float, scale: int, size: tuple[int, int], margin: int = 0, /) -> Rect:
-    """`rect` (px) grown by `by` px, in texels of `scale` px, `margin` texels more; within `size`."""
+    """`rect` grown by `by` px, in texels of `scale` px, `margin` texels more, within `size`."""
     spans: list[tuple[int, int]] = []
     for start, length, end in zip(rect[:2], rect[2:], size, strict=True):
         low = int((start - by) // scale) - margin

@@ -3,6 +3,8 @@
 //   reduce   level l − 1 → l   weights 1 3 3 1 along each axis: a point stays where it is
 //   fill     level l + 1 → l   images divided by coverage; where there is none, the coarser level's
 
+//!import andon/glass/defocus/kernel.wgsl
+
 @group(0) @binding(0) var linear: sampler;
 @group(0) @binding(1) var refracted: texture_2d<f32>;
 @group(0) @binding(2) var surface: texture_2d<f32>;
@@ -20,8 +22,11 @@ struct Level {
 }
 
 // Four samples between pixels are the sixteen weights.
-fn mean(source: texture_2d<f32>, texel: vec2f) -> vec4f {
+fn mean(source: texture_2d<f32>, texel: vec2f, is_read: bool) -> vec4f {
   let size = vec2f(textureDimensions(source));
+  if (!is_read) {
+    return vec4f(0.0);
+  }
   var sum = vec4f(0.0);
   for (var k = 0; k < 4; k++) {
     let offset = vec2f(f32(k & 1), f32(k >> 1)) * 1.5 - 0.75;
@@ -32,8 +37,8 @@ fn mean(source: texture_2d<f32>, texel: vec2f) -> vec4f {
 
 @fragment fn reduce(@builtin(position) texel: vec4f) -> Level {
   return Level(
-    mean(refracted, texel.xy), mean(reflected, texel.xy),
-    mean(sizes, texel.xy), mean(surface, texel.xy),
+    mean(refracted, texel.xy, BLURS.x || BLURS.y), mean(reflected, texel.xy, BLURS.z || BLURS.y),
+    mean(sizes, texel.xy, true), mean(surface, texel.xy, BLURS.y),
   );
 }
 

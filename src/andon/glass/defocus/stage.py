@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from andon.errors import InputError
-from andon.glass.defocus.kernels import LEAST_BLUR_PX, MAX_BLUR_PX
-from andon.glass.defocus.plan import LEVELS, DiscPlan, Rect, grown, size_table
+from andon.glass.defocus.kernels import LEAST_BLUR_PX, MAX_BLUR_PX, REACH_SIGMAS
+from andon.glass.defocus.plan import LEVELS, DiscPlan, Rect, Three, grown, size_table
 from andon.glass.model import Blur
-from andon.gpu.bindings import bind_group
+from andon.gpu.bindings import BindGroup, bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.passes import FullscreenPass, color_attachment
 from andon.gpu.textures import Texture, make_texture
@@ -30,9 +30,10 @@ OVER = {
     "alpha": {"operation": "add", "src_factor": "zero", "dst_factor": "one"},
 }
 
-# Largest blur of what is refracted, sticks to the surface, is mirrored, in px.
-Largest = tuple[float, float, float]
+# Of what is refracted, sticks to the surface, is mirrored, px.
+Diameters = tuple[float, float, float]
 IMAGES = ("refracted", "reflected")
+LAYERS = ("refracted", "surface", "reflected")
 
 
 @dataclass(frozen=True)
@@ -88,14 +89,14 @@ class DefocusStage:
         self._levels = {0: _Level(given, given, {}, {})}
         for level in range(1, DEEPEST + 1):
             self._levels[level] = self._make_level(level)
-        self._reduce = {n: self._reducing(n) for n in range(1, DEEPEST + 1)}
-        self._fill = {n: self._filling(n) for n in range(1, DEEPEST + 1)}
-        self._disc = {(n, s): self._gathering(n, s) for n in LEVELS for s in (False, True)}
-        self._settle = {(n, s): self._settling(n, s) for n in LEVELS for s in (False, True)}
-        self._compose: dict[tuple[bool, bool, bool], FullscreenPass] = {}
+        self._passes: dict[tuple[str, str, Any], FullscreenPass] = {}
 
     def encode(
-        self, encoder: Any, within: Rect | None = None, largest: Largest = (MAX_BLUR_PX,) * 3
+        self,
+        encoder: Any,
+        within: Rect | None = None,
+        largest: Diameters = (MAX_BLUR_PX, MAX_BLUR_PX, MAX_BLUR_PX),
+        smallest: Diameters = (0.0, 0.0, 0.0),
     ) -> None:
         """Records the blur and the composition.
 
@@ -104,61 +105,98 @@ class DefocusStage:
         within : (x, y, width, height) in pixels that holds all glass; None is the whole picture.
         largest : diameter in px that no pixel of refracted, surface, reflected exceeds; a layer
             with less than a pixel is sharp and costs nothing but its composition.
+        smallest : diameter that no pixel falls below, where it is known: saves the passes for
+            smaller discs.
         """
-        reach = self._largest(largest)
+        most, least = self._discs(largest), self._discs(smallest)
         rect = within or (0, 0, *self._size)
-        drawn = grown(rect, reach[1] / 2 + 1 if reach[1] else 0, 1, self._size)
+        drawn = grown(rect, self._reach(most[1]), 1, self._size)
         if not (rect[2] > 0 and rect[3] > 0 and drawn[2] and drawn[3]):
             return
-        if any(reach):
-            self._encode_pyramid(encoder, rect, reach)
+        if any(most):
+            self._encode_pyramid(encoder, rect, most, least)
         render = self._begin(encoder, "compose", [self._target], drawn, load=True)
-        self._draw(render, self._composing(reach), self._compose_group(reach))
+        step = self._pass(
+            "compose", "compose", self._plan.wgsl(0, *self._uses(most, least)), blend=OVER
+        )
+        self._draw(render, step, self._compose_group(most))
 
-    def _largest(self, largest: Largest) -> Largest:
+    def _discs(self, blurs: Diameters) -> Diameters:
         """Diameters of discs; 0 for what stays sharp."""
         refracted, surface, reflected = (
             0.0 if self.kind == "off" or px < LEAST_BLUR_PX else self._plan.diameter(px)
-            for px in largest
+            for px in blurs
         )
         return (0.0 if self.kind == "paper" else refracted), surface, reflected
 
-    def _encode_pyramid(self, encoder: Any, rect: Rect, reach: Largest) -> None:
-        around = (max(reach) + reach[1]) * (0.5 if self._plan.shape == "optical" else 0.75)
-        rects = {
-            n: grown(rect, around + MARGIN_PX, 2**n, self._level_size(n), MARGIN_TEXELS)
-            for n in self._levels
-        }
-        for n in range(1, DEEPEST + 1):
-            targets = list(self._levels[n].means.values())
-            render = self._begin(encoder, f"reduce {n}", targets, rects[n], load=False)
-            self._draw(render, self._reduce[n])
-        for n in range(DEEPEST, 0, -1):
-            targets = list(self._levels[n].filled.values())
-            render = self._begin(encoder, f"fill {n}", targets, rects[n], load=True)
-            self._draw(render, self._fill[n])
-        for name, px in zip(("refracted", "surface", "reflected"), reach, strict=True):
-            used = self._plan.levels_of(px)
-            for n in reversed(used):
-                self._encode_level(encoder, n, name, rects[n], is_last=n == used[-1])
+    def _uses(self, most: Diameters, least: Diameters) -> tuple[Three, Three]:
+        """Which layers are blurred, and which of them have discs that are gathered at full size."""
+        blurs = bool(most[0]), bool(most[1]), bool(most[2])
+        near = [self._plan.has_discs(0, px) for px in least]
+        return blurs, (near[0], near[1], near[2])
 
-    def _encode_level(self, encoder: Any, n: int, name: str, rect: Rect, *, is_last: bool) -> None:
+    def _reach(self, disc_px: float) -> float:
+        """Pixels from the middle of a disc to its last weight."""
+        return disc_px * (0.5 if self._plan.shape == "optical" else REACH_SIGMAS / 4) + 1
+
+    def _encode_pyramid(self, encoder: Any, rect: Rect, most: Diameters, least: Diameters) -> None:
+        rects = {n: self._around(rect, n, most[1], max(most)) for n in self._levels}
+        # What is composed reads less than what the discs read.
+        inner = {n: self._around(rect, n, most[1]) for n in LEVELS}
+        constants = self._plan.wgsl(0, *self._uses(most, least))
+        for n in range(1, DEEPEST + 1):
+            level, finer = self._levels[n], self._levels[n - 1].means
+            render = self._begin(encoder, f"reduce {n}", level.means.values(), rects[n])
+            step = self._pass("pyramid", "reduce", constants, targets=4)
+            self._draw(render, step, self._pyramid_group(finer, finer))
+        for n in range(DEEPEST, 0, -1):
+            level = self._levels[n]
+            # The coarsest has no coarser one: what it does not know no disc reaches.
+            beyond = self._levels[n + 1].filled if n < DEEPEST else level.means
+            render = self._begin(encoder, f"fill {n}", level.filled.values(), rects[n], load=True)
+            step = self._pass("pyramid", "fill", constants, targets=3)
+            self._draw(render, step, self._pyramid_group(level.means, beyond))
+        for name, largest, smallest in zip(LAYERS, most, least, strict=True):
+            used = self._plan.levels_of(largest)
+            for n in reversed(used):
+                self._encode_level(encoder, n, name, inner[n], n == used[-1], smallest)
+
+    def _around(self, rect: Rect, n: int, *discs_px: float) -> Rect:
+        """What discs around `rect` reach, in texels of level `n`."""
+        reach = sum(self._reach(px) for px in discs_px) + MARGIN_PX
+        return grown(rect, reach, 2**n, self._level_size(n), MARGIN_TEXELS)
+
+    def _encode_level(
+        self, encoder: Any, n: int, name: str, rect: Rect, is_last: bool, smallest: float
+    ) -> None:
         level, is_sheet = self._levels[n], name == "surface"
+        what, targets = ("sheet", 2) if is_sheet else ("image", 1)
         own = (level.means if is_sheet else level.filled)[name], level.filled["sizes"]
-        targets = [level.discs["light"], *([level.discs["rim"]] if is_sheet else [])]
-        render = self._begin(encoder, f"discs {name} {n}", targets, rect, load=True)
-        self._draw(render, self._disc[n, is_sheet], self._disc_group(*own, *own))
-        coarser = self._levels[n if is_last else n + 1]
-        beyond = own if is_last else (coarser.answers[name], coarser.answers["rim"])
-        discs = level.discs["light"], level.discs["rim"]
-        answers = [level.answers[name], *([level.answers["rim"]] if is_sheet else [])]
-        render = self._begin(encoder, f"settle {name} {n}", answers, rect, load=True)
-        self._draw(render, self._settle[n, is_sheet], self._disc_group(*discs, *beyond))
+        discs, constants = (level.discs["light"], level.discs["rim"]), self._plan.wgsl(n)
+        answers = (level.answers[name], level.answers["rim"])
+        coarser = self._levels[n if is_last else n + 1].answers
+        beyond = own if is_last else (coarser[name], coarser["rim"])
+        if self._plan.has_discs(n, smallest):
+            render = self._begin(encoder, f"discs {name} {n}", discs[:targets], rect, load=True)
+            step = self._pass("gather", f"gather_{what}", constants, targets)
+            self._draw(render, step, self._disc_group(*own, *own))
+            verb = "settle"
+        else:
+            discs, verb = own, "enlarge"
+        render = self._begin(encoder, f"{verb} {name} {n}", answers[:targets], rect, load=True)
+        step = self._pass("gather", f"{verb}_{what}", constants, targets)
+        self._draw(render, step, self._disc_group(*discs, *beyond))
 
     # ── passes ──────────────────────────────────────────────────────────────────────────────────
 
     def _begin(
-        self, encoder: Any, label: str, targets: Sequence[Texture], rect: Rect, *, load: bool
+        self,
+        encoder: Any,
+        label: str,
+        targets: Iterable[Texture],
+        rect: Rect,
+        *,
+        load: bool = False,
     ) -> Any:
         render = encoder.begin_render_pass(
             label=f"defocus: {label}",
@@ -167,55 +205,33 @@ class DefocusStage:
         render.set_scissor_rect(*rect)
         return render
 
-    def _draw(self, render: Any, step: FullscreenPass, group: Any = None) -> None:
+    def _draw(self, render: Any, step: FullscreenPass, group: BindGroup) -> None:
         render.set_pipeline(step.pipeline)
-        render.set_bind_group(0, (group or step.groups[0]).group)
+        render.set_bind_group(0, group.group)
         render.draw(3)
         render.end()
 
-    def _reducing(self, n: int) -> FullscreenPass:
-        finer = self._levels[n - 1].means
-        group = self._pyramid_group(finer, finer)
-        return FullscreenPass(self.gpu, f"{FOLDER}/pyramid.wgsl", "reduce", [FORMAT] * 4, [group])
-
-    def _filling(self, n: int) -> FullscreenPass:
-        # The coarsest has no coarser one: what it does not know is farther away than any disc.
-        beyond = self._levels[n + 1].filled if n < DEEPEST else self._levels[n].means
-        group = self._pyramid_group(self._levels[n].means, beyond)
-        return FullscreenPass(self.gpu, f"{FOLDER}/pyramid.wgsl", "fill", [FORMAT] * 3, [group])
-
-    def _gathering(self, n: int, is_sheet: bool) -> FullscreenPass:
-        level = self._levels[n]
-        source = level.means["surface"], level.filled["sizes"]
-        return self._disc_pass(n, "gather", is_sheet, self._disc_group(*source, *source))
-
-    def _settling(self, n: int, is_sheet: bool) -> FullscreenPass:
-        source = self._levels[n].discs["light"], self._levels[n].discs["rim"]
-        return self._disc_pass(n, "settle", is_sheet, self._disc_group(*source, *source))
-
-    def _disc_pass(self, n: int, verb: str, is_sheet: bool, group: Any) -> FullscreenPass:
-        return FullscreenPass(
-            self.gpu,
-            f"{FOLDER}/gather.wgsl",
-            f"{verb}_{'sheet' if is_sheet else 'image'}",
-            [FORMAT] * (2 if is_sheet else 1),
-            [group],
-            variants={KERNEL: self._plan.wgsl(n)},
-        )
-
-    def _composing(self, reach: Largest) -> FullscreenPass:
-        blurs = bool(reach[0]), bool(reach[1]), bool(reach[2])
-        if blurs not in self._compose:
-            self._compose[blurs] = FullscreenPass(
+    def _pass(
+        self, file: str, entry: str, constants: str, targets: int = 1, blend: Any = None
+    ) -> FullscreenPass:
+        """The pipeline for these constants, made at its first use."""
+        key = file, entry, constants
+        if key not in self._passes:
+            group = {
+                "pyramid": self._pyramid_group(self._levels[0].means, self._levels[1].means),
+                "gather": self._disc_group(*(self._sources[name] for name in (*LAYERS, "sizes"))),
+                "compose": self._compose_group((0.0, 0.0, 0.0)),
+            }[file]
+            self._passes[key] = FullscreenPass(
                 self.gpu,
-                f"{FOLDER}/compose.wgsl",
-                "compose",
-                [FORMAT],
-                [self._compose_group(reach)],
-                variants={KERNEL: self._plan.wgsl(0, blurs)},
-                blend=OVER,
+                f"{FOLDER}/{file}.wgsl",
+                entry,
+                [FORMAT] * targets,
+                [group],
+                variants={KERNEL: constants},
+                blend=blend,
             )
-        return self._compose[blurs]
+        return self._passes[key]
 
     # ── textures ────────────────────────────────────────────────────────────────────────────────
 
@@ -234,7 +250,7 @@ class DefocusStage:
             answers=made((*IMAGES, "surface", "rim") if n in LEVELS else ()),
         )
 
-    def _group(self, *textures: Texture, table: bool) -> Any:
+    def _group(self, *textures: Texture, table: bool) -> BindGroup:
         """The sampler, the table, and textures that are read between pixels, in order."""
         resources: dict[int, tuple[str, Any]] = {0: ("linear sampler", self._sampler)}
         if table:
@@ -243,23 +259,23 @@ class DefocusStage:
             resources[len(resources)] = ("smooth", texture.view)
         return bind_group(self.gpu, resources, "defocus")
 
-    def _pyramid_group(self, own: dict[str, Texture], beyond: dict[str, Texture]) -> Any:
-        own_textures = (own[name] for name in ("refracted", "surface", "reflected", "sizes"))
+    def _pyramid_group(self, own: dict[str, Texture], beyond: dict[str, Texture]) -> BindGroup:
+        own_textures = (own[name] for name in (*LAYERS, "sizes"))
         coarser = (beyond[name] for name in (*IMAGES, "sizes"))
         return self._group(*own_textures, *coarser, table=False)
 
-    def _disc_group(self, *textures: Texture) -> Any:
+    def _disc_group(self, *textures: Texture) -> BindGroup:
         return self._group(*textures, table=True)
 
-    def _compose_group(self, reach: Largest) -> Any:
-        """What was blurred is read from the pyramid's answers, the rest from what it goes on with."""
+    def _compose_group(self, most: Diameters) -> BindGroup:
+        """Blurred layers are read from the pyramid's answers, others from what it goes on with."""
         level = self._levels[1]
-        far = [bool(self._plan.levels_of(px)) for px in reach]
+        far = [bool(self._plan.levels_of(px)) for px in most]
         coarser = (
             level.answers["refracted"] if far[0] else level.filled["refracted"],
             level.answers["surface"] if far[1] else level.means["surface"],
             level.answers["reflected"] if far[2] else level.filled["reflected"],
             level.answers["rim"] if far[1] else level.filled["sizes"],
         )
-        sources = (self._sources[name] for name in ("refracted", "surface", "reflected", "sizes"))
+        sources = (self._sources[name] for name in (*LAYERS, "sizes"))
         return self._group(*sources, *coarser, table=True)

@@ -105,10 +105,10 @@ fn spot_illuminance(lamp: i32, layer: i32, position: vec3f, normal: vec3f, bias:
   let place = (tangent / record.half_width * 0.5 + 0.5) * MAP_SIZE;
   let lift = max(bias, along * record.half_width * (2.0 / MAP_SIZE));
   let found = spot_share(Receiver(lamp, layer, reach, normal, away + lift), place);
-  let seen = select(found, 1.0, layer < 0);
+  let ramp = cone_ramp(lamp, along * inverse);
+  let seen = select(found, 1.0, layer < 0 || ramp <= 0.0); // no map beside the cone
   let free = max(-away, 0.0) * inverse * inverse * inverse;
-  let lit = cone_ramp(lamp, along * inverse) * seen;
-  return received(lamp, Straight(position, normal, free, lit, seen, 1.0));
+  return received(lamp, Straight(position, normal, free, ramp * seen, seen, 1.0));
 }
 
 fn directional_texel_lit(point: Receiver, texel: vec2i) -> bool {

@@ -184,26 +184,16 @@ def illuminate(
         light = illuminance(lamp, position, normal)
         if isinstance(lamp, AreaLamp) and lamp.body in bodies and body is not None:
             light[body == list(bodies).index(lamp.body)] = 0
-        bent = None
-        if served := served_balls(lamp, balls):
-            is_open, bent = through_balls(lamp, served, position, normal)
-            light[~is_open] = 0
-            light += bent
         lit = np.abs(light).max(axis=-1) > 0
-        if bent is not None:
-            # What does not face the lamp has no straight line to it that could be hidden.
-            lit &= _faces(lamp, position, normal)
+        if served := served_balls(lamp, balls):
+            # Where the lamp does not shine by itself, there is no line to it that could be hidden.
+            is_open, bent = through_balls(lamp, served, position, normal)
+            light = light * is_open[:, None] + bent
+            lit &= np.abs(light).max(axis=-1) > 0
         light[lit] *= _share(lamp, position[lit], normal[lit], lifted[lit], rays)
         added += light
     total[mask] = added
     return total
-
-
-def _faces(lamp: Lamp, position: Float, normal: Float) -> NDArray[np.bool_]:
-    if isinstance(lamp, DirectionalLamp):
-        return normal @ lamp.direction < 0
-    assert isinstance(lamp, PointLamp)
-    return np.einsum("ij,ij->i", lamp.position_m - position, normal) > 0
 
 
 def _share(lamp: Lamp, position: Float, normal: Float, lifted: Float, rays: ShadowRays) -> Float:

@@ -36,15 +36,16 @@ photons                         4                seconds        noise
 ==============================  ===============  =============  ==================================
 
     A cell is 2.6 mrad wide at the axis and 4 mrad at ψ = 0.2: what a lamp of 3 or 4 mm does at a
-    metre. The fourth channel is the mean b of the light in a cell: that is where it comes from
-    (asin(b/ρ_lamp) off the axis) and where it goes (asin(b/ρ) off the radius), so the cosine at the
+    metre. The fourth channel leads to where the light of a cell goes in the mean, and so to its
+    impact parameter b and to where it comes from (asin(b/ρ_lamp) off the axis): the cosine at the
     receiver, and the intensity of a spot or luminaire, are those of the refracted ray.
 Not served
     Lamps with an area, and `visible_radius_m`: all lamps here are points (or far away). What the
     ball *reflects* (4 % and the second rainbow), and light that lamps send through the ball onto
     another ball's light: of two balls in a row the one nearer to the receiver bends the light, the
     other one only dims it. Other things hide refracted light where they hide the straight line to
-    the lamp. A lamp inside a ball shines as if the ball were not there.
+    the lamp; nothing hides it where the lamp does not shine straight (from behind, or beside its
+    cone). A lamp inside a ball shines as if the ball were not there.
 
 Sources: van de Hulst 1957, section 12.2 (rays through a sphere); the journal article of the glass
 paper has the caustic as an illusion, without a formula.

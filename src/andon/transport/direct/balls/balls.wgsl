@@ -3,7 +3,7 @@
 //!struct BallRecord
 
 @group(1) @binding(10) var<uniform> balls: array<BallRecord, 64>;
-// E·ρ²/E_centre in units of LIGHT_SCALE, and the impact parameter; a layer for each lamp and ball.
+// E·ρ²/E_centre and its lean, in units of LIGHT_SCALE; a layer for each lamp and ball.
 @group(1) @binding(11) var ball_tables: texture_2d_array<f32>;
 
 //!import andon/transport/direct/balls/pairs.wgsl
@@ -17,7 +17,8 @@ struct Straight {
   relative: f32,
 };
 
-const GRAZING: f32 = 0.999;
+const STEEPEST: f32 = 30.0;
+const LEAST_LIGHT: f32 = 1e-5;
 
 // Receiver relative to a ball, in radii.
 struct BallPlace {
@@ -84,13 +85,15 @@ fn looked_up(layer: i32, at: BallPlace) -> vec4f {
 fn refracted(lamp: i32, pair: i32, pairs: vec2i, at: BallPlace, line: Straight) -> vec3f {
   let ball = balls[pair];
   let found = looked_up(pair, at);
-  let sine = clamp(found.w * at.vergence, -GRAZING, GRAZING);
+  let tilt = found.w / max(found.y, LEAST_LIGHT / LIGHT_SCALE);
+  let slope = clamp(tilt * at.vergence, -STEEPEST, STEEPEST);
+  let cosine = inverseSqrt(1.0 + slope * slope);
   let across = (at.along * at.outwards - at.off * ball.axis) * at.vergence;
-  let cosine = sqrt(1.0 - sine * sine);
-  let leaning = at.radial - across * (sine / cosine);
+  let leaning = at.radial - across * slope;
   let facing = max(-dot(leaning, line.normal), 0.0);
   let arriving = leaning * cosine;
-  let lamp_sine = found.w * ball.lamp_vergence;
+  // Where it comes from: the ray of the same impact parameter.
+  let lamp_sine = clamp(tilt * cosine, -1.0, 1.0) * ball.lamp_vergence;
   let leaving = ball.axis * sqrt(1.0 - lamp_sine * lamp_sine) + at.outwards * lamp_sine;
   var light = found.xyz * (LIGHT_SCALE * facing * at.vergence * at.vergence * ball.at_centre);
   light *= emitted_share(lamp, leaving);
@@ -119,7 +122,7 @@ fn received(lamp: i32, line: Straight) -> vec3f {
       bent += refracted(lamp, pair, pairs, at, line);
     }
   }
-  // What does not face the lamp has no place in its shadow map.
-  let seen = select(1.0, line.seen, line.free > 0.0);
+  // Where the lamp does not shine by itself, there is no line to it that could be hidden.
+  let seen = select(1.0, line.seen, line.free > 0.0 && line.relative > 0.0);
   return lamps[lamp].light * (straight + bent * seen);
 }

@@ -149,5 +149,5 @@ def _record(lamp: Lamp, ball: GlassBall) -> NDArray[Any]:
 
 
 def _texels(table: BallTable) -> NDArray[np.float16]:
-    texels = np.concatenate([table.light / LIGHT_SCALE, table.impact[..., None]], axis=-1)
+    texels = np.concatenate([table.light, table.lean[..., None]], axis=-1) / LIGHT_SCALE
     return texels.astype(np.float16)

@@ -23,8 +23,10 @@ __all__ = [
 
 Float = NDArray[np.float64]
 
-# Of what is inside a ball, or on it: sines and places are cut here.
-GRAZING = 0.999
+# tan χ of a ray that leaves the ball along its surface, with hardly any light.
+STEEPEST = 30.0
+# Less than this has no direction; half floats end at 4e-6 (6e-8 times LIGHT_SCALE).
+LEAST_LIGHT = 1e-5
 
 
 @dataclass(frozen=True)
@@ -95,15 +97,16 @@ def refracted_lux(
     `others` are the other balls: before this one they dim its light, behind it they take it.
     """
     place = _place(lamp, ball, position)
-    light, impact = _looked_up(table_of(ball, lamp), place)
-    sine = np.clip(impact * place.vergence, -GRAZING, GRAZING)
+    light, tilt = _looked_up(table_of(ball, lamp), place)
+    slope = np.clip(tilt * place.vergence, -STEEPEST, STEEPEST)
+    impact = np.clip(tilt / np.hypot(1, slope), -1, 1)
     across = (place.along[:, None] * place.outwards) - place.off[:, None] * ball.axis(lamp)
     across = across * place.vergence[:, None]
-    slope = sine / np.sqrt(1 - sine**2)
     # Light per area of the concentric sphere, times the vector that has 1 along the radius.
     leaning = place.radial - across * slope[:, None]
     facing = np.maximum(-np.einsum("ij,ij->i", leaning, normal), 0)
-    arriving = leaning * np.sqrt(1 - sine**2)[:, None]
+    arriving = leaning / np.hypot(1, slope)[:, None]
+    # Where it comes from: the ray of the same impact parameter.
     lamp_sine = impact * ball.lamp_vergence(lamp)
     leaving = (
         ball.axis(lamp) * np.sqrt(1 - lamp_sine**2)[:, None] + place.outwards * lamp_sine[:, None]
@@ -159,7 +162,7 @@ def _place(lamp: Lamp, ball: GlassBall, position: Float) -> _Place:
 
 
 def _looked_up(table: BallTable, place: _Place) -> tuple[Float, Float]:
-    """Bilinear: E·ρ²/E_centre (n, 3) and the impact parameter (n,)."""
+    """Bilinear: E·ρ²/E_centre (n, 3), and tan χ/v of its direction (n,)."""
     # sin ψ/2 without a difference of near numbers ahead; behind the lamp's side 1 at most.
     sine = np.sqrt(np.clip((1 - place.along * place.vergence) / 2, 0, 1))
     ahead = place.along > 0
@@ -170,9 +173,10 @@ def _looked_up(table: BallTable, place: _Place) -> tuple[Float, Float]:
     left = np.minimum(column.astype(np.int64), CELLS - 2)
     upper = np.minimum(row.astype(np.int64), ROWS - 2)
     found: list[Float] = []
-    for values in (table.light, table.impact[..., None]):
+    for values in (table.light, table.lean[..., None]):
         right, lower = (column - left)[:, None], (row - upper)[:, None]
         first = values[upper, left] * (1 - right) + values[upper, left + 1] * right
         second = values[upper + 1, left] * (1 - right) + values[upper + 1, left + 1] * right
         found.append(first * (1 - lower) + second * lower)
-    return found[0], found[1][:, 0]
+    light, lean = found
+    return light, lean[:, 0] / np.maximum(light[:, 1], LEAST_LIGHT)

@@ -46,12 +46,14 @@ class BallTable:
     light : (ROWS, CELLS, 3) flux through a cell of a concentric sphere, over the flux that one
         unit of the illuminance which the lamp would give at the centre sends through the cell's
         solid angle (times the square of the radius): E·ρ²/E_centre.
-    impact : (ROWS, CELLS) mean impact parameter b of that flux in [−1, 1], radii; negative where
-        it has crossed the axis.
+    lean : (ROWS, CELLS) the same of the middle channel, times tan χ/v of each ray: χ is its angle
+        from the radius, towards the axis, v the row's vergence. The light of several rays is the
+        sum of their vectors, (1, tan χ) for a unit through the sphere; so this is interpolated like
+        `light`, and the direction is their ratio.
     """
 
     light: Float
-    impact: Float
+    lean: Float
 
 
 def place_of(sine: Float, /) -> Float:
@@ -95,28 +97,23 @@ def ball_table(
     absorption: tuple[float, float, float],
     /,
 ) -> BallTable:
-    """The table of a ball; `absorption` per radius. About 25 ms, 10 ms without dispersion."""
+    """The table of a ball; `absorption` per radius. Made in 80 ms, 35 ms without
+    dispersion (one core)."""
     # Rays are even in sin⁻¹ b: dense where Fresnel and the angles change fastest.
     incidence = np.linspace(0, np.pi / 2, RAYS + 1)
     flux = [_flux(incidence, lamp_vergence, n, a) for n, a in zip(index, absorption, strict=True)]
-    moment = _moment(incidence, lamp_vergence, index[1], absorption[1])
     edges = angle_of(np.linspace(0, 1, CELLS + 1))
     light = np.empty((ROWS, CELLS, 3))
-    impact = np.empty((ROWS, CELLS))
+    lean = np.zeros((ROWS, CELLS))
     where: list[NDArray[np.float64]] = []
     for channel in range(3):
         if channel == 0 or index[channel] != index[channel - 1]:
             where = _crossings(np.sin(incidence), lamp_vergence, index[channel], edges)
-        same, other = _cells(flux[channel], where)
-        light[..., channel] = same + other
+        light[..., channel] = _cells(flux[channel], where)
         if channel == 1:
-            ahead, crossed = _cells(moment, where)
-            total = same + other
-            impact = np.divide(
-                ahead - crossed, total, out=np.zeros_like(total), where=total > 1e-12
-            )
+            lean = _lean(np.sin(incidence), flux[1], where)
     solid_angle = np.diff(-2 * np.pi * np.cos(edges))
-    return BallTable(light / solid_angle[:, None], np.clip(impact, -1, 1))
+    return BallTable(light / solid_angle[:, None], lean / solid_angle)
 
 
 def _integral(incidence: Float, values: Float, middles: Float) -> Float:
@@ -143,10 +140,17 @@ def _flux(incidence: Float, lamp_vergence: float, index: float, absorption: floa
     return _integral(incidence, *both)
 
 
-def _moment(incidence: Float, lamp_vergence: float, index: float, absorption: float) -> Float:
-    middle = (incidence[:-1] + incidence[1:]) / 2
-    both = [_density(x, lamp_vergence, index, absorption) * np.sin(x) for x in (incidence, middle)]
-    return _integral(incidence, *both)
+def _lean(b: Float, flux: Float, where: list[Float]) -> Float:
+    """(ROWS, CELLS) flux that falls into each cell, times tan χ/v = b/√(1 − b²v²)."""
+    vergence = np.linspace(0, 1, ROWS)[:, None]
+    middle = (b[:-1] + b[1:]) / 2
+    slope = middle / np.sqrt(1 - (middle * vergence) ** 2)
+    moment = np.concatenate([np.zeros((ROWS, 1)), np.cumsum(np.diff(flux) * slope, axis=1)], axis=1)
+    ahead, crossed = _shares(moment, [part[::2] for part in where])
+    rows = ahead - crossed
+    # As much blurred as `light`, whose rows are half as far from each other.
+    around = np.concatenate([rows[:1], rows, rows[-1:]])
+    return (around[:-2] + 6 * around[1:-1] + around[2:]) / 8
 
 
 def _crossings(b: Float, lamp_vergence: float, index: float, edges: Float) -> list[Float]:
@@ -179,22 +183,26 @@ def _crossings(b: Float, lamp_vergence: float, index: float, edges: Float) -> li
     return [up, down, beyond]
 
 
-def _cells(running: Float, where: list[Float]) -> tuple[Float, Float]:
-    """What of a running sum over rays falls into each cell: on its own side of the axis, and
-    crossed over; each (ROWS, CELLS), the mean over the neighbouring half rows.
+def _cells(running: Float, where: list[Float]) -> Float:
+    """(ROWS, CELLS) of a running sum over rays what falls into each cell."""
+    halves = np.add(*_shares(np.broadcast_to(running, (len(where[0]), len(running))), where))
+    # Rows from rows at half the step, each with its neighbours: ¼, ½, ¼.
+    around = np.concatenate([halves[:1], halves, halves[-1:]])
+    return (around[:-2] + 2 * around[1:-1] + around[2:])[::2] / 4
+
+
+def _shares(running: Float, where: list[Float]) -> tuple[Float, Float]:
+    """Of running sums (rows, rays) what falls into each cell: on its own side of the axis, and
+    crossed over; each (rows, CELLS).
     """
     up, down, beyond = (_at(running, numbers) for numbers in where)
-    own = np.diff(up, axis=1) - np.diff(down, axis=1)
-    return _blended(own), _blended(np.diff(beyond, axis=1))
+    return np.diff(up, axis=1) - np.diff(down, axis=1), np.diff(beyond, axis=1)
 
 
 def _at(running: Float, numbers: Float) -> Float:
-    below = np.minimum(numbers.astype(np.int64), len(running) - 2)
-    first = running[below]
-    return first + (running[below + 1] - first) * (numbers - below)
-
-
-def _blended(halves: Float) -> Float:
-    """Rows from rows at half the step, each with its neighbours: ¼, ½, ¼."""
-    around = np.concatenate([halves[:1], halves, halves[-1:]])
-    return (around[:-2] + 2 * around[1:-1] + around[2:])[::2] / 4
+    below = np.minimum(numbers.astype(np.int64), running.shape[1] - 2)
+    first = np.take_along_axis(running, below, axis=1)
+    after = np.take_along_axis(running, below + 1, axis=1)
+    part = numbers - below
+    # Flux grows with the square of the ray's number, near the axis exactly.
+    return first + (after - first) * part * (2 * below + part) / (2 * below + 1)

@@ -37,7 +37,7 @@ SEED = 20211
 # Samples along each side of a pixel of the photographs.
 OVER = 4
 LABEL_PX = 2048
-QUALITY = 66
+QUALITY, PATTERN_QUALITY = 74, 63
 
 
 def eyes(scene: dict[str, Any]) -> list[View]:
@@ -101,7 +101,7 @@ def main() -> None:
     rectified = board.reshape(rows, 2, columns, 2, 3).mean(axis=(1, 3), dtype=np.float64)
     light = e0 + lamp_lux(scene, (rows, columns))
     rectified = rectified * light[..., None] / np.pi / white
-    print(write_jpeg(folder / "pattern.jpg", _codes(rectified), quality=QUALITY))
+    print(write_jpeg(folder / "pattern.jpg", _codes(rectified), quality=PATTERN_QUALITY))
     # Andon writes no pictures with alpha.
     Image.fromarray(label(LABEL_PX)).save(folder / "label.png", optimize=True)
     names, lines = gaze_rows(scene["observer"]["interpupillary_mm"] / 1000)

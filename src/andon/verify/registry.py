@@ -54,6 +54,7 @@ def rows() -> tuple[Row, ...]:
         gaze,
         glass,
         glass_blur,
+        glass_frame,
         harmonics,
         lampshade,
         penumbra,
@@ -80,5 +81,6 @@ def rows() -> tuple[Row, ...]:
         *gaze.ROWS,
         *glass.ROWS,
         *glass_blur.ROWS,
+        *glass_frame.ROWS,
         *caustic.ROWS,
     )

@@ -107,8 +107,9 @@ def _in_cone(axis: Float, cosine: Float, turn: Float) -> Float:
     right /= np.linalg.norm(right)
     up = np.cross(right, axis)
     sine, angle = np.sqrt(np.maximum(1 - cosine**2, 0)), 2 * np.pi * turn
-    across = np.cos(angle)[:, None] * right + np.sin(angle)[:, None] * up
-    return cosine[:, None] * axis + sine[:, None] * across
+    across: Float = np.cos(angle)[:, None] * right + np.sin(angle)[:, None] * up
+    found: Float = cosine[:, None] * axis + sine[:, None] * across
+    return found
 
 
 def _refracted(direction: Float, normal: Float, ratio: float) -> tuple[Float, Float]:

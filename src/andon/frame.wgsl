@@ -62,6 +62,20 @@ fn point_at(pixel: vec2f) -> SurfacePoint {
   return vec4f(min(objects(point, pixel.xy, lux, real), MOST), 1.0);
 }
 
+// Metres: light is asked for off the glass, since a ball hides lamps from what is inside it.
+const OFF_GLASS_M: f32 = 2e-4;
+
+// What sticks to glass reflects this; the G-buffer is that of the glass. Probes have captured some
+// lamps' light, which stands in `object_lux` then.
+@fragment fn sticker_light(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+  let point = point_at(pixel.xy);
+  let position = point.position + OFF_GLASS_M * point.normal;
+  let lux = illuminance(position, point.normal, direct.bias_object_m, 0u);
+  let all = ambient.object_lux + lux - captured_lux(point.normal);
+  let light = object_linear(vec3f(1.0), vec3f(0.0), all, ambient);
+  return vec4f(select(vec3f(0.0), min(light, MOST), (point.flags & VALID) != 0u), 1.0);
+}
+
 @fragment fn illuminance_map(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
   return vec4f(added_lux(point_at(pixel.xy)), 1.0);
 }

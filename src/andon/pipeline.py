@@ -2,8 +2,8 @@
 
 ::
 
-    capture ─CameraFrame▶ see ─Surface▶ illuminate ─Illuminance▶ compose ─Luminance▶ glow
-                                                      DisplayImage ◀─ encode ◀─Luminance─┘
+    capture ─CameraFrame▶ see ─Surface▶ illuminate ─Illuminance▶ compose ─Luminance▶ glass
+                                DisplayImage ◀─ encode ◀─Luminance─ glow ◀─Luminance─┘
 
 One frame, one or two views: what does not depend on the eye (geometry, lamps, shadow maps) is
 shared, the rest is done per view.
@@ -33,7 +33,10 @@ from andon.scene import Scene
 from andon.spaces import View
 
 if TYPE_CHECKING:
+    from andon.display.model import Seen
     from andon.engines.prepared import Prepared
+    from andon.glass.layers import Layered
+    from andon.glass.report import GlassReport
     from andon.lamps import Lamp
 
 __all__ = ["ENGINES", "Frame", "Renderer", "Report", "relight", "render"]
@@ -59,6 +62,7 @@ class Report:
     maps_redrawn : shadow maps of lamps that had moved.
     stage_seconds : wall time of each stage.
     ignored_tables : tables and keys of the scene that this version does not draw.
+    glass : where the layers of glass appear and what is in focus; None without glass.
     """
 
     engine: str
@@ -74,6 +78,7 @@ class Report:
     maps_redrawn: int
     stage_seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     ignored_tables: tuple[str, ...] = ()
+    glass: GlassReport | None = None
 
 
 @dataclass(frozen=True)
@@ -86,10 +91,12 @@ class Frame:
     surface : what is where; which pixels are holes or virtual objects.
     illuminance : ΔE that the lamps add, lx.
     luminance : what leaves towards the camera, cd/m².
-    image : 8-bit codes for the screen.
+    image : 8-bit codes for the screen; of an optical see-through display its own.
     report : engine, times, holes and what else is worth knowing.
     bodies : luminance of luminous bodies and visible lamps alone, cd/m²; None without any.
     glow : the same as the glow filters it; None without a glow.
+    glass : the images that glass shows, sharp; None without glass.
+    seen : what the eye gets through an optical see-through display; None for a video one.
     """
 
     captured: CameraFrame
@@ -100,6 +107,8 @@ class Frame:
     report: Report
     bodies: Luminance | None = None
     glow: Luminance | None = None
+    seen: Seen | None = None
+    glass: Layered | None = None
 
 
 class Renderer:
@@ -151,6 +160,9 @@ class Renderer:
         seen = clock.time("surface", lambda: engine.see(frame.view.name, moment))
         light = clock.time("direct", lambda: engine.illuminate(seen, moment))
         luminance = clock.time("composite", lambda: engine.compose(frame, seen, light, moment))
+        if prepared.glass is not None:
+            behind = luminance
+            luminance = clock.time("glass", lambda: engine.glass_over(frame, seen, behind, moment))
         if prepared.glow is not None:
             composed = luminance
             luminance = clock.time("glow", lambda: engine.glow(frame, seen, composed, moment))
@@ -172,8 +184,21 @@ class Renderer:
         surface, illuminance, luminance, image = self._engine.read(*handles)
         captured = self.prepared.frames[self._view_name(view)]
         bodies, filtered = self._engine.read_bodies(captured, handles[0], self._moment)
-        report = self._report(captured, surface)
-        return Frame(captured, surface, illuminance, luminance, image, report, bodies, filtered)
+        layered = self._engine.read_glass(captured, handles[0], self._moment)
+        report = self._report(captured, surface, layered)
+        seen = self._engine.read_seen(captured, *handles[2:])
+        return Frame(
+            captured,
+            surface,
+            illuminance,
+            luminance,
+            image,
+            report,
+            bodies,
+            filtered,
+            seen,
+            layered,
+        )
 
     def picture(self, time_seconds: float = 0.0, view: str | None = None) -> NDArray[np.uint8]:
         """Draws one view and returns its 8-bit codes (H, W, 3) alone, which is faster."""
@@ -191,8 +216,9 @@ class Renderer:
             )
         return view
 
-    def _report(self, captured: CameraFrame, surface: Surface) -> Report:
+    def _report(self, captured: CameraFrame, surface: Surface, layered: Layered | None) -> Report:
         model = self.prepared.surface
+        glass = self.prepared.glass
         clipped = 0 if captured.clipped is None else int(captured.clipped.sum())
         return Report(
             engine=self._engine.name,
@@ -209,6 +235,7 @@ class Renderer:
             maps_redrawn=self._engine.maps_redrawn,
             stage_seconds=self.stage_seconds,
             ignored_tables=self.prepared.ignored,
+            glass=glass.report(layered, self._moment.focus) if glass and layered else None,
         )
 
 

@@ -167,10 +167,37 @@ class Surface:
     body_id: NDArray[np.int32] | None = None
     cover: NDArray[np.float64] | None = None
 
+    @classmethod
+    def of_points(cls, position: NDArray[np.float64], normal: NDArray[np.float64], /) -> Surface:
+        """A row of points (n, 3) with unit normals (n, 3), as if a view saw them."""
+        count = len(position)
+        row, nothing = (1, count), np.zeros((1, count, 3))
+        return cls(
+            position[None],
+            normal[None],
+            np.ones(row),
+            np.ones(row, bool),
+            np.ones(row, bool),
+            nothing,
+            np.zeros(row, np.int32),
+            nothing,
+            View("latlong", count, 1),
+        )
+
     @property
     def holes(self) -> int:
         """Pixels without geometry."""
         return int(self.valid.size - np.count_nonzero(self.valid))
+
+    @property
+    def distance_m(self) -> NDArray[np.float64]:
+        """(H, W) from the camera; in holes that of their cover, or inf."""
+        distance = np.linalg.norm(self.position - self.view.position, axis=-1)
+        known = self.valid & np.isfinite(distance)
+        if self.cover is None:
+            return np.where(known, distance, np.inf)
+        along = np.linalg.norm(self.view.rays_planar(), axis=-1)
+        return np.where(known, distance, np.where(self.valid, np.inf, self.cover * along))
 
 
 @dataclass(frozen=True)
@@ -194,6 +221,9 @@ class Luminance:
 
 @dataclass(frozen=True)
 class DisplayImage:
-    """What a screen is sent: `rgb` (H, W, 3) uint8, encoded with the camera's response (VST)."""
+    """What a screen is sent: `rgb` (H, W, 3) uint8.
+
+    Encoded with the camera's response for video see-through; sRGB, black adds nothing, for optical.
+    """
 
     rgb: NDArray[np.uint8]

@@ -6,11 +6,15 @@ import numpy as np
 import pytest
 
 from andon.engines.gpu import RECEIVERS
+from andon.glass.backdrops.records import KINDS, backdrop_variants
+from andon.glass.model import Backdrop, Ball, Closed, LensShape, Slab, Solid, Sticker
+from andon.glass.plan import variants_of
 from andon.gpu import wgsl
 from andon.gpu.layout import HostStruct
 from andon.gpu.passes import shader_module
 from andon.lamps import DirectionalLamp, PointLamp, SkyLamp, SpotLamp
 from andon.lamps.areas import AreaLamp, DiskLamp, PolygonLamp, SphereLamp, TubeLamp
+from andon.quantities import Geometry
 from andon.surface.stage import PLAIN, TEXTURED
 from andon.transport.direct.balls.buffers import BALLS, NO_BALLS, PAIRS, pairs_code
 from andon.transport.direct.balls.model import GlassBall
@@ -60,6 +64,25 @@ def summed(lamps):
     )
 
 
+TRIANGLE_MESH = Closed(Geometry(SQUARE, np.array([[0, 1, 2]], np.int32), uvs=SQUARE[:, :2]))
+STUCK = Sticker(np.zeros((1, 1, 4), np.float32), 0.5)
+SOLIDS = {
+    "a ball": Ball(1.0),
+    "a slab": Slab(np.ones(3)),
+    "a lens": LensShape(1.0, (2.0, 2.0), 1.0),
+    "a mesh": TRIANGLE_MESH,
+}
+
+
+def placed(*shapes, **options):
+    return variants_of([Solid("glass", shape, sticker=STUCK, **options) for shape in shapes])
+
+
+def looked_at(*kinds, projection="pinhole"):
+    solids = [Solid("glass", Ball(1.0), backdrop=Backdrop(kind)) for kind in kinds]
+    return variants_of(solids) | backdrop_variants(solids, projection)
+
+
 PROJECTION = "andon/gbuffer/projections/{}.wgsl"
 VARIANTS = {
     "as written": {},
@@ -79,6 +102,14 @@ VARIANTS = {
     "objects without lamps": {RECEIVERS.format(""): RECEIVERS.format("_lamps")},
     "objects in probes": {RECEIVERS.format(""): RECEIVERS.format("_probes")},
     "probes behind walls": PROBE_VARIANTS["walls"],
+    "a ball's one interface": placed(SOLIDS["a ball"], interfaces=1),
+    "glass of all shapes, dispersing": placed(*SOLIDS.values(), index=(1.5, 1.51, 1.52)),
+    **{name: placed(shape) for name, shape in SOLIDS.items()},
+    **{f"glass before the {kind}": looked_at(kind) for kind in KINDS},
+    **{
+        f"glass before all kinds, {name}": looked_at(*KINDS, projection=name)
+        for name in ("fisheye", "latlong")
+    },
     "probes of objects": PROBE_VARIANTS["object"],
 }
 
@@ -114,7 +145,8 @@ def test_imports_resolve(path):
 def test_every_module_is_used():
     imported = {name for text in TEXTS.values() for name in IMPORT.findall(text)}
     exchanged = {name for variant in VARIANTS.values() for name in variant.values()}
-    assert set(MODULES) - set(PROGRAMS) <= imported | exchanged
+    generated = {n for v in VARIANTS.values() for text in v.values() for n in IMPORT.findall(text)}
+    assert set(MODULES) - set(PROGRAMS) <= imported | exchanged | generated
     assert imported <= set(MODULES)
 
 

@@ -390,8 +390,6 @@ def test_references_that_leave_the_folder(refused_scene, reference):
 
 
 LATER = [
-    ("[display]\nmode = 'ost'\npeak_luminance_cd_m2 = 500\n", "display.mode"),
-    ("[display]\ntone = 'fusion'\n", "display.tone"),
     ("[display]\ndither = true\n", "display.dither"),
 ]
 

@@ -14,27 +14,33 @@ WIDTH = 64
 class Caller:
     """`expression` over `x[0]`, `x[1]`, … (vec4f each), in WGSL, gives a vec4f per row.
 
-    `rows` is how many at most, or (width, height) of the picture.
+    `rows` is how many at most, or (width, height) of the picture. `declarations` and `resources`:
+    more bindings of group 0; `options` go to the pass.
     """
 
-    def __init__(self, gpu, module, expression, columns, rows, *, statements=""):
+    def __init__(
+        self, gpu, module, expression, columns, rows, *, statements="", declarations="",
+        resources=None, **options,
+    ):  # fmt: skip
         self.gpu = gpu
         self.width, self.height = rows if isinstance(rows, tuple) else (WIDTH, -(-rows // WIDTH))
         self.inputs = make_texture(gpu, "rgba32float", self.width, self.height, layers=columns)
         self.target = make_texture(gpu, "rgba32float", self.width, self.height)
         reads = ", ".join(f"textureLoad(rows, at, {k}, 0)" for k in range(columns))
         text = f"""//!import {module}
+{declarations}
 @group(0) @binding(0) var rows: texture_2d_array<f32>;
-@fragment fn call(@builtin(position) place: vec4f) -> @location(0) vec4f {{
-  let at = vec2i(place.xy);
+@fragment fn call(@builtin(position) pixel: vec4f) -> @location(0) vec4f {{
+  let at = vec2i(pixel.xy);
   var x = array<vec4f, {columns}>({reads});
   {statements}
   return {expression};
 }}
 """
-        group = bind_group(gpu, {0: ("float array", self.inputs.view)})
+        group = bind_group(gpu, {0: ("float array", self.inputs.view)} | (resources or {}))
+        variants = {"harness": text} | options.pop("variants", {})
         self.render = FullscreenPass(
-            gpu, "harness", "call", ["rgba32float"], [group], variants={"harness": text}
+            gpu, "harness", "call", ["rgba32float"], [group], variants=variants, **options
         )
 
     def fill(self, *columns):

@@ -15,6 +15,7 @@ from PIL import Image
 
 from andon.files import write_camera, write_exr, write_volume
 from andon.spaces import View
+from gaze_files import EYELINK, own_gaze
 from photometry_files import ies, ldt
 from volume_files import two_rooms
 
@@ -196,6 +197,12 @@ end_header
 3 0 2 3
 """
 
+EXPOSURE_LIST = b"""# Filename exposure 1/shutter_speed f/stop gain(db) ND_filters
+bright.png 2 0.5 8 0 0
+middle.png 0.5 2 8 0 0
+dark.png   0.125 8 8 0 0
+"""
+
 RESPONSE_CSV = b"""encoded,linear_r,linear_g,linear_b
 0,0,0,0
 0.5,0.2,0.21,0.22
@@ -331,4 +338,7 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "photometry.ies": _write(ies(horizontals=(0, 90, 180)).encode()),
     "photometry.ldt": _write(ldt(symmetry=2).encode()),
     "volume.glb": _volume,
+    "exposures.list": _write(EXPOSURE_LIST),
+    "gaze.csv": _write(own_gaze().encode()),
+    "gaze.eyelink": _write(EYELINK.encode()),
 }

@@ -105,6 +105,126 @@ def clip(
 
 
 @app.command()
+def fuse(
+    out: Annotated[
+        Path,
+        typer.Option("-o", "--out", help="PNG, JPEG: exposure fusion; EXR, HDR: relative light."),
+    ],
+    photos: Annotated[
+        list[Path] | None, typer.Argument(help="PNG or JPEG, two or more of one size.")
+    ] = None,
+    seconds: Annotated[
+        str | None,
+        typer.Option(help="Exposures in the photographs' order: 1/320,1/80,1/20. Default: EXIF."),
+    ] = None,
+    exposures: Annotated[
+        Path | None,
+        typer.Option("--list", help="Names and exposures of the photographs, a line each."),
+    ] = None,
+    align: Annotated[
+        str,
+        typer.Option(metavar="auto|none|shift|ecc", help="Of hand-held photographs; ecc turns."),
+    ] = "auto",
+    sheet: Annotated[
+        Path | None, typer.Option(help="Contact sheet of the photographs and the result.")
+    ] = None,
+    response: Annotated[
+        Path | None,
+        typer.Option(help="Recovered camera response (CSV), for capture.response.file."),
+    ] = None,
+) -> None:
+    """Fuse photographs of several exposures: to a picture, or to light.
+
+    Pictures need no exposure times. Light is relative: 1 is white in the photograph of the middle
+    exposure. Borders of one pure colour, which registration leaves, are left out.
+
+    Examples:
+
+        andon fuse dark.jpg middle.jpg bright.jpg -o fused.png --sheet sheet.png
+
+        andon fuse a.jpg b.jpg c.jpg --seconds 1/320,1/80,1/20 -o room.exr
+
+        andon fuse --list image_list.txt -o church.hdr
+    """
+    from andon.cli.fuse import FuseOptions, run
+
+    run(FuseOptions(tuple(photos or ()), out, seconds, exposures, align, sheet, response))
+
+
+@app.command()
+def glass(
+    scene: Annotated[
+        Path, typer.Argument(help="Scene file (TOML) with [[glass]]; or figure7, the paper's.")
+    ],
+    out: Annotated[
+        Path,
+        typer.Option(
+            "-o", "--out", help="PNG, JPEG, EXR (cd/m²); WebP, GIF: over time. figure7: a folder."
+        ),
+    ],
+    gaze: Annotated[
+        str | None,
+        typer.Option(
+            metavar="surface|background|DEPTH_M|FILE.csv",
+            help="What the eyes look at; default: as the scene says.",
+        ),
+    ] = None,
+    eye: Annotated[
+        str | None,
+        typer.Option(metavar="left|right|both", help="Of a stereo rig; default: both."),
+    ] = None,
+    blur: Annotated[
+        str | None,
+        typer.Option(
+            metavar="optical|gaussian|paper|off",
+            help="Of what is not looked at: a disc, a Gaussian like it, the paper's, none.",
+        ),
+    ] = None,
+    interfaces: Annotated[
+        int | None,
+        typer.Option(metavar="1|2", help="Refraction at entry only (the paper's), or all."),
+    ] = None,
+    layers: Annotated[
+        Path | None,
+        typer.Option(help="Folder: surface, refracted and mirrored image apart, and their blurs."),
+    ] = None,
+    time_seconds: Annotated[float, typer.Option("--time", help="Moment of the session, s.")] = 0.0,
+    samples: Annotated[int, typer.Option(help="Of figure7: paths a pixel of real glass.")] = 64,
+    with_scene: Annotated[
+        Path | None, typer.Option("--scene", help="Of figure7: another scene than the paper's.")
+    ] = None,
+    engine: EngineOption = "auto",
+) -> None:
+    """Draw glass as each eye sees it that looks at its surface, or through it.
+
+    What sticks to the glass, what comes through it and what it mirrors appear at different
+    distances; each is blurred by how far it is from where the eyes are focused. The notes say
+    where.
+
+    Examples:
+
+        andon glass examples/glass/scene.toml -o surface.png --gaze surface
+
+        andon glass examples/glass/scene.toml -o through.png --gaze background --eye left
+
+        andon glass examples/glass/scene.toml -o paper.png --blur paper --interfaces 1
+
+        andon glass examples/glass/looking.toml -o looking.webp --eye left
+
+        andon glass figure7 -o figure7
+    """
+    if str(scene) == "figure7":
+        from andon.cli.glass_figure import FigureOptions
+        from andon.cli.glass_figure import run as run_figure
+
+        run_figure(FigureOptions(out, with_scene, samples, engine))
+        return
+    from andon.cli.glass import GlassOptions, run
+
+    run(GlassOptions(scene, out, gaze, eye, blur, interfaces, time_seconds, layers, engine))
+
+
+@app.command()
 def demo(
     name: Annotated[str, typer.Argument(help="photo: a real photograph, relit.")] = "photo",
     out: Annotated[Path, typer.Option(help="Folder for the pictures.")] = Path("andon-demo"),
@@ -117,6 +237,29 @@ def demo(
     from andon.cli.demo import run
 
     run(name, out, engine)
+
+
+@app.command()
+def gaze(
+    recording: Annotated[Path, typer.Argument(help="CSV: Pupil Labs Core's, or docs/gaze.md's.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for pictures and tables.")],
+    filter: Annotated[
+        str | None, typer.Option(metavar="none|paper|one-euro", help="Default: the scene's.")
+    ] = None,
+    scene: Annotated[Path | None, typer.Option(help="Scene file whose [gaze] is used.")] = None,
+    rate_hz: Annotated[
+        float | None, typer.Option("--rate", help="Thin the recording to this rate first, Hz.")
+    ] = None,
+) -> None:
+    """Say where a recording of two eyes looks, how still and how late each filter makes it.
+
+    Writes depth and vergence over time (gaze.png), histogram.png, fixations.csv and report.json.
+
+    Example: `andon gaze gaze_positions.csv -o gaze`
+    """
+    from andon.cli.gaze import GazeOptions, run
+
+    run(GazeOptions(recording, out, filter, scene, rate_hz))
 
 
 @app.command()

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from andon.cli.console import Interrupted, note
 from andon.cli.relight import check_view
@@ -16,7 +17,7 @@ from andon.cli.without_photograph import refuse_photograph, white_text
 from andon.errors import InputError, MachineError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from andon.engines.prepared import Prepared
     from andon.pipeline import Renderer
@@ -49,12 +50,19 @@ class ClipOptions:
 
 def run(options: ClipOptions) -> None:
     """Draws and writes. Raises `InputError` before anything is drawn."""
-    is_folder = _check_out(options.out)
-    from andon.files.pictures.moving import check_moving
     from andon.scene import load_scene
 
-    scene = _scaled(load_scene(options.scene), options.scale)
+    scene = load_scene(options.scene)
     check_view(scene, options.view)
+    draw(scene, options)
+
+
+def draw(scene: Scene, options: ClipOptions, views: Sequence[str] = ()) -> None:
+    """Draws `scene`, which stands in for `options.scene`; several `views` side by side."""
+    is_folder = _check_out(options.out)
+    from andon.files.pictures.moving import check_moving
+
+    scene = _scaled(scene, options.scale)
     refuse_photograph(options.out, scene)
     rate = options.frames_per_second
     rate = scene.scene.frames_per_second if rate is None else rate
@@ -64,13 +72,32 @@ def run(options: ClipOptions) -> None:
     from andon.pipeline import Renderer
 
     renderer = Renderer(scene, options.engine)  # type: ignore[arg-type]
+    film = _Film(renderer, tuple(views) or (options.view or renderer.view_names[0],))
     if is_folder:
-        _write_folder(options, renderer, times)
+        _write_folder(options, film, times)
     else:
-        _write_file(options, renderer, times, rate)
+        _write_file(options, film, times, rate)
     for line in _notes(options, scene, renderer.prepared):
         note(line)
     print(options.out)
+
+
+@dataclass(frozen=True)
+class _Film:
+    """Draws pictures of one moment; those of several views lie side by side."""
+
+    renderer: Renderer
+    views: tuple[str, ...]
+
+    def picture(self, time_seconds: float) -> NDArray[np.uint8]:
+        """(H, W, 3) uint8."""
+        return np.hstack([self.renderer.picture(time_seconds, view) for view in self.views])
+
+    @property
+    def size(self) -> int:
+        """Bytes of one picture."""
+        frames = self.renderer.prepared.frames
+        return sum(frames[view].linear.size for view in self.views)
 
 
 def _notes(options: ClipOptions, scene: Scene, prepared: Prepared) -> list[str]:
@@ -101,7 +128,8 @@ def _scaled(scene: Scene, scale: float) -> Scene:
             remedy="leave it out",
         )
     cameras = {name: _scaled_camera(camera, name, scale) for name, camera in scene.rig.cameras}
-    names = {"camera" if name == "mono" else name: own for name, own in cameras.items()}
+    one = scene.rig.camera is not None
+    names = {"camera" if one else name: own for name, own in cameras.items()}
     return scene.model_copy(update={"rig": scene.rig.model_copy(update=names)})
 
 
@@ -175,7 +203,7 @@ def _times(options: ClipOptions, scene: Scene, rate: float) -> list[float]:
     return [start + number / rate for number in range(count)]
 
 
-def _write_folder(options: ClipOptions, renderer: Renderer, times: list[float]) -> None:
+def _write_folder(options: ClipOptions, film: _Film, times: list[float]) -> None:
     """Each frame as soon as it is drawn: 0000.png, 0001.png, …"""
     from andon.files.pictures import write_png
 
@@ -188,7 +216,7 @@ def _write_folder(options: ClipOptions, renderer: Renderer, times: list[float]) 
     with _progress(len(times)) as step:
         for number, time in enumerate(times):
             try:
-                picture = renderer.picture(time, options.view)
+                picture = film.picture(time)
                 write_png(out / f"{number:0{digits}d}.png", picture)
             except KeyboardInterrupt:
                 kept = f"{number} of {len(times)} frames are in {out}"
@@ -196,12 +224,11 @@ def _write_folder(options: ClipOptions, renderer: Renderer, times: list[float]) 
             step()
 
 
-def _write_file(options: ClipOptions, renderer: Renderer, times: list[float], rate: float) -> None:
+def _write_file(options: ClipOptions, film: _Film, times: list[float], rate: float) -> None:
     """All frames in one file, once they are drawn."""
     from andon.files.pictures.moving import write_moving
 
-    view = options.view or renderer.view_names[0]
-    total = len(times) * renderer.prepared.frames[view].linear.size
+    total = len(times) * film.size
     if total > MOST_BYTES:
         raise InputError(
             f"{len(times)} frames take {total / 2**30:.1f} GB, at most {MOST_BYTES >> 30} are held",
@@ -211,7 +238,7 @@ def _write_file(options: ClipOptions, renderer: Renderer, times: list[float], ra
     frames: list[Any] = []
     with _progress(len(times)) as step:
         for time in times:
-            frames.append(renderer.picture(time, options.view))
+            frames.append(film.picture(time))
             step()
     write_moving(options.out, frames, rate)
 

@@ -91,6 +91,12 @@ class RelightOptions:
         list[Path] | None,
         typer.Option("--illuminance-map", help="EXR: lux; PNG: false colours. May be repeated."),
     ] = None
+    seen: Annotated[
+        Path | None,
+        typer.Option(
+            help="What the eye gets through an optical see-through display: PNG, JPEG; EXR: cd/m²."
+        ),
+    ] = None
     tone: Annotated[
         str | None,
         typer.Option(

@@ -9,6 +9,7 @@ import numpy as np
 
 from andon.cli.console import check_writable, note, print_report
 from andon.cli.options import RelightOptions
+from andon.cli.seen import check_seen, notes_on_seen, write_seen
 from andon.cli.typed import ASSUMED_AMBIENT_LUX, named_as_typed, scene_of
 from andon.cli.without_photograph import refuse_photograph, white_text
 from andon.errors import InputError
@@ -30,7 +31,8 @@ def run(options: RelightOptions) -> None:
 
     scene = scene_of(options)
     check_view(scene, options.view)
-    for path in (options.out, *(options.illuminance_maps or ())):
+    check_seen(options.seen, scene)
+    for path in _outputs(options):
         refuse_photograph(path, scene)
     with named_as_typed(options, len(scene.lamp) - len(options.lamps or ()), scene.file):
         renderer = Renderer(scene, options.engine)  # type: ignore[arg-type]
@@ -41,13 +43,15 @@ def run(options: RelightOptions) -> None:
             "(--ambient-lux states it)"
         )
     _write(options.out, frame.image.rgb, frame.luminance)
+    if options.seen is not None and frame.seen is not None:
+        write_seen(options.seen, frame.seen)
     for path in options.illuminance_maps or ():
         write_illuminance(path, frame.illuminance, frame.surface.valid)
     lines = notes_on_time(options.time_seconds, scene.scene.duration_seconds)
     about = notes_on(
         frame, renderer.prepared, options.time_seconds, has_photograph=scene.has_photograph
     )
-    for line in (*lines, *about):
+    for line in (*lines, *about, *notes_on_seen(frame.seen)):
         note(line)
     depth = depth_text(frame.surface, has_photograph=scene.has_photograph)
     white = white_text(scene, renderer.prepared)
@@ -57,11 +61,16 @@ def run(options: RelightOptions) -> None:
     print(options.out)
 
 
+def _outputs(options: RelightOptions) -> list[Path]:
+    seen = [] if options.seen is None else [options.seen]
+    return [options.out, *(options.illuminance_maps or ()), *seen]
+
+
 def _refuse_overwriting(options: RelightOptions) -> None:
     """An output must be no input, and no other output."""
     named = (options.photo, options.depth, options.camera, options.mesh, options.scene)
     taken = {path.resolve() for path in (*named, *(options.objects or ())) if path is not None}
-    for path in (options.out, *(options.illuminance_maps or ())):
+    for path in _outputs(options):
         if path.resolve() in taken:
             raise InputError(
                 "is also an input or another output, and would be overwritten",

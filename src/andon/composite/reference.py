@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from andon.composite.model import Ambient
 from andon.lamps import Lamp, PointLamp, SphereLamp, intensity_cd
 from andon.quantities import CameraFrame, Surface
-from andon.spaces import View
 
 __all__ = [
     "Disc",
@@ -23,6 +22,7 @@ __all__ = [
     "lamp_luminance",
     "object_luminance",
     "relit_linear",
+    "unlit_linear",
 ]
 
 Float = NDArray[np.float64]
@@ -39,6 +39,11 @@ def relit_linear(frame: CameraFrame, ambient: Ambient, added_lux: Float, /) -> F
         return captured * np.maximum(dimming + added_lux / ambient.illuminance_lux, 0)
     dimmed = frame.response.decode(dimming * frame.response.encode(captured))
     return np.maximum(dimmed + captured * (added_lux / ambient.illuminance_lux), 0)
+
+
+def unlit_linear(frame: CameraFrame, ambient: Ambient, /) -> Float:
+    """Linear camera values (H, W, 3) in what dimming leaves of E0, without any lamp."""
+    return relit_linear(frame, ambient, np.zeros(3))
 
 
 def object_luminance(
@@ -130,7 +135,7 @@ def draw_lamps(luminance: Float, surface: Surface, lamps: Sequence[Lamp], /) -> 
         return luminance
     origin, directions = view.rays_world()
     pixel_angle = np.sqrt(view.solid_angles())
-    distance = _distance(surface, view)
+    distance = surface.distance_m
     for disc in discs:
         reach = disc.position_m - origin
         away = float(np.linalg.norm(reach))
@@ -144,13 +149,3 @@ def draw_lamps(luminance: Float, surface: Surface, lamps: Sequence[Lamp], /) -> 
 def _angle_between(directions: Float, axis: Float) -> Float:
     """Angles (H, W), precise near 0 where arccos is not."""
     return 2 * np.arcsin(np.clip(np.linalg.norm(directions - axis, axis=-1) / 2, 0, 1))
-
-
-def _distance(surface: Surface, view: View) -> Float:
-    """(H, W) distance of the surface from the camera; in holes that of their cover, or inf."""
-    distance = np.linalg.norm(surface.position - view.position, axis=-1)
-    known = surface.valid & np.isfinite(distance)
-    if surface.cover is None:
-        return np.where(known, distance, np.inf)
-    along = np.linalg.norm(view.rays_planar(), axis=-1)
-    return np.where(known, distance, np.where(surface.valid, np.inf, surface.cover * along))

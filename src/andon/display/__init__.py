@@ -13,7 +13,11 @@ tone                   above white                                  identity wit
 **none**               clips, as the camera would                   everywhere
 reinhard (shoulder)    bends towards white, per channel             below 0.6 of white
 global operators       compress the whole range                     nowhere
+fusion                 simulated exposures, fused by parts          nowhere
 =====================  ===========================================  ==========================
+
+Optical see-through (`ost`) adds light to what is seen instead: codes of its own, and a simulated
+view that is shown by the way above.
 
 Sources: IEC 61966-2-1 (sRGB); Reinhard et al. 2002, equation 3, for the shoulder.
 """

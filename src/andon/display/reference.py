@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.display.fusion import fused_codes
 from andon.display.model import Exposure
 from andon.responses import Response
 
@@ -47,6 +48,8 @@ def encode(
     /,
 ) -> NDArray[np.uint8]:
     """(H, W, 3) uint8 from luminance (H, W, 3) in cd/m²; rounded to nearest."""
+    if exposure.tone == "fusion":
+        return fused_codes(luminance_cd_m2, exposure, response, luminance_per_unit)
     scale = exposure.units_per_cd_m2 or 1 / luminance_per_unit
     encoded = response.encode(tone_curve(luminance_cd_m2 * scale, exposure.tone))
     return np.asarray(np.clip(encoded, 0, 1) * 255 + 0.5, np.uint8)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from andon.display.fusion import fused_codes
 from andon.display.model import Exposure
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
@@ -21,7 +22,8 @@ DISPLAY_RECORD = HostStruct(
     "DisplayRecord", (("exposure", "f32"), ("gamma", "f32"), ("tone", "u32"))
 )
 STRUCTS = {DISPLAY_RECORD.name: DISPLAY_RECORD}
-TONES = {"none": 0, "reinhard": 1, "hue": 2}
+# Fusion looks at the whole picture in pyramids: the host does it when the picture is read.
+TONES = {"none": 0, "reinhard": 1, "hue": 2, "fusion": 0}
 # Samples of a measured response at equal steps of √linear: the error of linear interpolation is
 # below 0.1 code for curves as bent as a gamma of 3.
 CURVE_SAMPLES = 4096
@@ -39,6 +41,7 @@ class DisplayStage:
         luminance_per_unit: float,
     ) -> None:
         self.gpu = gpu
+        self._luminance, self._settings = luminance, (exposure, response, luminance_per_unit)
         size = (luminance.width, luminance.height)
         self.image = make_texture(gpu, "rgba8unorm", *size, label="display")
         settings = uniform_buffer(gpu, DISPLAY_RECORD.dtype.itemsize, "display")
@@ -70,5 +73,9 @@ class DisplayStage:
         self._pass.encode(encoder, [self.image.view])
 
     def read(self) -> DisplayImage:
-        """The picture, waiting for the device."""
+        """The picture, waiting for the device; the tone ``fusion`` is done here, on the host."""
+        exposure, response, per_unit = self._settings
+        if exposure.tone == "fusion":
+            cd_m2 = self._luminance.read()[..., :3].astype(np.float64) * per_unit
+            return DisplayImage(fused_codes(cd_m2, exposure, response, per_unit))
         return DisplayImage(np.ascontiguousarray(self.image.read()[..., :3]))

@@ -9,11 +9,16 @@ from numpy.typing import NDArray
 
 from andon import gbuffer
 from andon.composite import stage as composite
+from andon.composite.reference import unlit_linear
+from andon.display.model import Seen
+from andon.display.ost_stage import OstStage
 from andon.display.stage import DisplayStage
 from andon.engines.changes import Changes, Rectangle
+from andon.engines.glass_gpu import GlassBuffers, GlassView
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import NO_LAMPS, PROBES, taking
+from andon.glass.layers import Layered
 from andon.glow.stage import GlowStage
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import open_gpu
@@ -54,14 +59,23 @@ class _View:
         )
         self.composite.load(frame)
         self.luminance = make_texture(gpu, "rgba16float", view.width, view.height, label="light")
+        self.glass: GlassView | None = None
+        if engine.glass is not None:
+            lit = self.composite.resources, engine.direct
+            self.glass = GlassView(gpu, engine.glass, frame, seen, self.luminance, lit)
         self.glow: GlowStage | None = None
         if prepared.glow is not None:
             alone = self.composite.lamps.alone
             self.glow = GlowStage(gpu, alone, self.luminance, prepared.glow, view)
             self.filtered = make_texture(gpu, alone.format, view.width, view.height, label="glow")
-        self.display = DisplayStage(
-            gpu, self.luminance, frame.response, prepared.exposure, frame.luminance_per_unit
-        )
+        self.display: DisplayStage | OstStage
+        if prepared.exposure.see_through is not None:
+            unlit = unlit_linear(frame, prepared.ambient)
+            self.display = OstStage(gpu, self.luminance, frame, prepared.exposure, unlit)
+        else:
+            self.display = DisplayStage(
+                gpu, self.luminance, frame.response, prepared.exposure, frame.luminance_per_unit
+            )
         own = {0: ("uint", seen.texture.view), 1: ("uniform", seen.view_buffer)}
         groups = [
             bind_group(gpu, own | self.composite.resources, "frame"),
@@ -133,6 +147,10 @@ class GpuEngine:
             captured=frozenset() if probes is None else probes.captured,
             balls=prepared.balls,
         )
+        self.glass: GlassBuffers | None = None
+        if prepared.glass is not None:
+            white = next(iter(prepared.frames.values())).luminance_per_unit
+            self.glass = GlassBuffers(self.gpu, prepared.glass, white)
         self.variants = self.direct.variants | self._receivers()
         self._views = {name: _View(self, frame) for name, frame in prepared.frames.items()}
         self._encoder: Any = None
@@ -176,6 +194,21 @@ class GpuEngine:
         )
         return light.luminance
 
+    def glass_over(
+        self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, moment: Moment
+    ) -> Texture:
+        """Records the glass, blurred by where its layers are."""
+        view = self._views[frame.view.name]
+        if self.glass is not None and view.glass is not None:
+            self.glass.update(moment.lamps)
+            view.glass.encode(self.encoder, moment)
+        return luminance
+
+    def read_glass(self, frame: CameraFrame, seen: GpuSurface, moment: Moment) -> Layered | None:
+        """The layers of the glass, sharp; for figures, not for frames."""
+        view = self._views[frame.view.name]
+        return None if view.glass is None else view.glass.read()
+
     def glow(
         self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, moment: Moment
     ) -> Texture:
@@ -185,11 +218,17 @@ class GpuEngine:
             view.glow.encode(self.encoder, view.composite.lamps.within)
         return luminance
 
-    def encode(self, frame: CameraFrame, luminance: Texture) -> DisplayStage:
+    def encode(self, frame: CameraFrame, luminance: Texture) -> DisplayStage | OstStage:
         """Records the display."""
         display = self._views[frame.view.name].display
         display.encode(self.encoder)
         return display
+
+    def read_seen(
+        self, frame: CameraFrame, luminance: Texture, image: DisplayStage | OstStage
+    ) -> Seen | None:
+        """What is seen through an optical see-through display; for figures, not for frames."""
+        return image.read_seen(self.prepared.photometry) if isinstance(image, OstStage) else None
 
     def finish(self) -> None:
         """Submits what was recorded and waits for it."""
@@ -199,7 +238,7 @@ class GpuEngine:
         self.gpu.wait()
 
     def read(
-        self, seen: GpuSurface, light: _View, luminance: Texture, image: DisplayStage
+        self, seen: GpuSurface, light: _View, luminance: Texture, image: DisplayStage | OstStage
     ) -> tuple[Surface, Illuminance, Luminance, DisplayImage]:
         """The quantities as arrays; draws the illuminance map, which no frame needs."""
         light.lux.encode(self.encoder, [light.lux_map.view])
@@ -213,7 +252,7 @@ class GpuEngine:
             surface.emitted_cd_m2[own] = alone[own]
         return surface, Illuminance(lux, word), self._cd_m2(luminance, light.frame), image.read()
 
-    def picture(self, image: DisplayStage) -> DisplayImage:
+    def picture(self, image: DisplayStage | OstStage) -> DisplayImage:
         """What `encode` gave, as an array."""
         return image.read()
 

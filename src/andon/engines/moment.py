@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.glass.model import Focus
 from andon.lamps import Body, Lamp
 from andon.quantities import Geometry
 
@@ -24,6 +25,7 @@ class Moment:
     bodies : luminous bodies; always the same names and triangles.
     movers : virtual objects that move, in the order of `SurfaceModel.movers`; always the same
         triangles and materials.
+    focus : what the eyes are focused on; None: everything.
     object_middles : (n, 3) metres, world: the middle of the bounding box of each virtual object,
         in the order of `SurfaceModel.objects_table`.
     """
@@ -33,3 +35,4 @@ class Moment:
     bodies: tuple[Body, ...] = ()
     movers: tuple[Geometry, ...] = ()
     object_middles: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 3)))
+    focus: Focus | None = None

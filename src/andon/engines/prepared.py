@@ -11,6 +11,7 @@ from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
 from andon.display.model import Exposure
 from andon.engines.checks import check_lamps
+from andon.engines.glass import SceneGlass, glass_of
 from andon.engines.moment import Moment
 from andon.engines.photographless import (
     ambient_without_photograph,
@@ -37,21 +38,20 @@ from andon.scene import Scene
 from andon.surface.load import load_surface
 from andon.surface.model import SurfaceModel
 from andon.surface.virtual import virtual_surface
-from andon.transport.direct.balls import GlassBall
+from andon.transport.direct.balls import GLASS, GlassBall
 from andon.transport.direct.casters import MOVERS, OBJECTS, REAL, Casters
 
 __all__ = ["Prepared", "prepare"]
 
 # Tables and keys that the schema has and this version does not draw; a frame says so.
-LATER_TABLES = ("baked", "glass", "gaze")
+LATER_TABLES = ("baked",)
 
 LATER_KEYS = {
     "surface": ("response", "reflectance_map"),
-    "capture": ("clipped_luminance_cd_m2", "depth", "pose", "gaze", "noise"),
+    "capture": ("clipped_luminance_cd_m2", "depth", "pose", "noise"),
     "atmosphere": ("mist",),
-    "observer": ("age", "pigment", "pupil_mm", "glasses"),
+    "observer": ("pigment", "glasses"),
     "glare": ("renderer", "highlights", "halo", "needles", "adaptation"),
-    "display": ("peak_luminance_cd_m2", "transmittance"),
 }
 
 
@@ -75,10 +75,10 @@ class Prepared:
     exposure : settings of the display.
     glow : of luminous bodies, or None.
     photometry : the word that every number carries.
-    balls : of glass, in whose shadow and caustic surfaces stand.
     ignored : tables of the scene that this version does not draw.
     sources : names of the known lamps of E0, which `lamps` has with positive and negative light.
     probes : light that virtual objects stand in instead of E0, or None.
+    glass : transparent bodies and what the eyes are focused on, or None.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -89,10 +89,15 @@ class Prepared:
     exposure: Exposure = field(default_factory=Exposure)
     glow: Glow | None = None
     photometry: Photometry = "absolute"
-    balls: tuple[GlassBall, ...] = ()
     ignored: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
     probes: SceneProbes | None = None
+    glass: SceneGlass | None = None
+
+    @property
+    def balls(self) -> tuple[GlassBall, ...]:
+        """Glass in whose shadow and caustic surfaces stand."""
+        return () if self.glass is None else self.glass.balls
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
@@ -104,6 +109,7 @@ class Prepared:
             self.bodies(time_seconds),
             movers,
             np.concatenate([self.surface.still_middles, moving.reshape(-1, 3)]),
+            None if self.glass is None else self.glass.focus(time_seconds),
         )
 
     def casters(self, moment: Moment) -> Casters:
@@ -150,6 +156,7 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         ignored=_ignored(scene),
         sources=tuple(table.name for table in scene.ambient.source) if scene.ambient else (),
         probes=probes,
+        glass=glass_of(scene, frames, surface, ambient, lamps, probes) if frames else None,
     )
 
 
@@ -200,7 +207,8 @@ def _virtual_groups(scene: Scene, surface: SurfaceModel) -> frozenset[str]:
     bodies = [body.name for body in resolve_bodies(scene, 0.0)]
     still = [OBJECTS] if len(surface.casters.triangles) else []
     moving = [MOVERS] if any(mover.casts_shadow for mover in surface.movers) else []
-    return frozenset([*bodies, *still, *moving])
+    glass = [GLASS] if any(table.shape == "sphere" for table in scene.glass) else []
+    return frozenset([*bodies, *still, *moving, *glass])
 
 
 def _ignored(scene: Scene) -> tuple[str, ...]:

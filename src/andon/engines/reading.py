@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite.model import Ambient
-from andon.display.model import Exposure
+from andon.display.model import Exposure, SeeThrough
 from andon.errors import InputError
 from andon.files.cameras import read_camera
 from andon.files.pictures import Picture, read_picture
@@ -98,12 +98,14 @@ def view_of(scene: Scene, name: str, shape: tuple[int, int] | None) -> View:
                 error.rule, file=scene.file, field=error.field, remedy=error.remedy
             ) from error
     else:
-        field = f"rig.{'camera' if name == 'mono' else name}.file"
+        field = f"rig.{'camera' if scene.rig.camera is not None else name}.file"
         size = None if shape is None else (shape[1], shape[0])
         view = read_camera(scene.path(camera.file, field), size=size)
         view = replace(view, name=name)
         if camera.has_pose:
             view = replace(view, world_from_camera=camera.pose())
+    if scene.rig.camera is not None and scene.rig.kind == "stereo":
+        view = replace(view, world_from_camera=_eye_pose(view, scene.observer.interpupillary_mm))
     undistort = scene.capture is None or scene.capture.undistort
     if view.distortion and not undistort:
         raise InputError(
@@ -113,6 +115,14 @@ def view_of(scene: Scene, name: str, shape: tuple[int, int] | None) -> View:
             remedy="leave it out: pictures are undistorted",
         )
     return view
+
+
+def _eye_pose(view: View, interpupillary_mm: float) -> NDArray[np.float64]:
+    """The pose of an eye beside the point between both eyes, which is the pose of `view`."""
+    side = {"left": -0.5, "right": 0.5}[view.name]
+    pose = view.world_from_camera.copy()
+    pose[:3, 3] += side * interpupillary_mm / 1000 * pose[:3, 0]
+    return pose
 
 
 def response_of(scene: Scene, picture: Picture | None) -> Response:
@@ -196,14 +206,20 @@ def luminance_per_unit_of(scene: Scene, ambient: Ambient) -> float:
 def exposure_of(scene: Scene) -> Exposure:
     """Settings of the display."""
     display = scene.display
-    for key, bad in (("mode", "ost"), ("tone", "fusion"), ("dither", True)):
-        if getattr(display, key) == bad:
-            raise InputError(
-                f"{bad!r} is in the schema but not rendered yet",
-                file=scene.file,
-                field=f"display.{key}",
-            )
-    return Exposure(display.exposure, display.tone)  # type: ignore[arg-type]
+    if display.dither:
+        raise InputError(
+            "True is in the schema but not rendered yet", file=scene.file, field="display.dither"
+        )
+    through = None
+    if display.mode == "ost":
+        assert display.peak_luminance_cd_m2 is not None  # the schema asks for it
+        through = SeeThrough(
+            display.peak_luminance_cd_m2,
+            display.transmittance,
+            display.compensation,
+            scene.has_photograph,
+        )
+    return Exposure(display.exposure, display.tone, through)
 
 
 def glow_of(scene: Scene) -> Glow | None:

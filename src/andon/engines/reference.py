@@ -6,10 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite import reference as composite
+from andon.display import ost
 from andon.display import reference as display
+from andon.display.model import Seen
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import lampless_pixels, lit_pixels
+from andon.glass import reference as glass
+from andon.glass.backdrops.model import SceneOfView
+from andon.glass.defocus import reference as defocus
+from andon.glass.layers import Layered
 from andon.glow import reference as glow
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface import reference as surface
@@ -19,6 +25,11 @@ from andon.transport.direct.casters import ShadowRays
 __all__ = ["ReferenceEngine"]
 
 Float = NDArray[np.float64]
+
+# As in frame.wgsl: light is asked for off the glass, since a ball hides lamps from what is inside.
+OFF_GLASS_M = 2e-4
+# Of a row of points, which is as long as a view may be.
+MOST_POINTS = 65536
 
 
 class ReferenceEngine:
@@ -31,6 +42,7 @@ class ReferenceEngine:
         self.prepared = prepared
         self._surfaces: dict[str, Surface] = {}
         self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
+        self._layered: Layered | None = None
         self.maps_redrawn = 0
 
     def see(self, view_name: str, moment: Moment) -> Surface:
@@ -83,6 +95,50 @@ class ReferenceEngine:
         )
         return Luminance(luminance, self.prepared.photometry)
 
+    def glass_over(
+        self, frame: CameraFrame, seen: Surface, luminance: Luminance, moment: Moment
+    ) -> Luminance:
+        """The picture with glass in it, blurred by where its layers are."""
+        own = self.prepared.glass
+        if own is None:
+            return luminance
+        cd_m2 = np.asarray(luminance.cd_m2, np.float64)
+        behind = SceneOfView(cd_m2, seen, frame.view, frame.luminance_per_unit, own.dimming)
+        lamps = own.highlights(moment.lamps)
+        self._layered = glass.layers_of(
+            own.model,
+            behind,
+            moment.focus,
+            lamps,
+            lambda *at: own.standing_lux + self._lit(*at, moment),
+        )
+        beside = cd_m2
+        if own.model.defocus_frame and moment.focus is not None:
+            sizes = glass.frame_blur_px(own.model, behind, moment.focus)
+            beside = defocus.frame_blurred(cd_m2, sizes)
+        layers = defocus.blurred(self._layered.layers, own.model.blur)
+        return Luminance(layers.over(beside), self.prepared.photometry)
+
+    def _lit(self, points: Float, normals: Float, moment: Moment) -> Float:
+        """(n, 3) lux of the lamps at `points` (n, 3) with unit `normals` (n, 3)."""
+        lux = np.zeros_like(points)
+        for start in range(0, len(points), MOST_POINTS):
+            part = slice(start, start + MOST_POINTS)
+            row = Surface.of_points(points[part] + OFF_GLASS_M * normals[part], normals[part])
+            bias_m = np.full(row.view.shape, self.prepared.surface.bias.object_m)
+            lux[part] = direct.illuminate(
+                row, moment.lamps, self._rays, bias_m=bias_m, balls=self.prepared.balls
+            )[0]
+        probes = self.prepared.probes
+        for lamp in moment.lamps if probes is not None else ():
+            if lamp.name in probes.captured:
+                lux -= direct.illuminance(lamp, points, normals)
+        return lux
+
+    def read_glass(self, frame: CameraFrame, seen: Surface, moment: Moment) -> Layered | None:
+        """The layers of the glass, sharp, of the view that was drawn last."""
+        return self._layered
+
     def glow(
         self, frame: CameraFrame, seen: Surface, luminance: Luminance, moment: Moment
     ) -> Luminance:
@@ -95,10 +151,27 @@ class ReferenceEngine:
 
     def encode(self, frame: CameraFrame, luminance: Luminance) -> DisplayImage:
         """8-bit codes for the screen."""
+        through, white = self.prepared.exposure.see_through, frame.luminance_per_unit
+        if through is not None:
+            cd_m2 = np.asarray(luminance.cd_m2, np.float64)
+            real, unlit = (
+                white * ost.real_light(light, through)
+                for light in (frame.linear, composite.unlit_linear(frame, self.prepared.ambient))
+            )
+            share = ost.shown_share(cd_m2, real, through, white, unlit)
+            return DisplayImage(ost.display_codes(share))
         codes = display.encode(
             luminance.cd_m2, self.prepared.exposure, frame.response, frame.luminance_per_unit
         )
         return DisplayImage(codes)
+
+    def read_seen(
+        self, frame: CameraFrame, luminance: Luminance, image: DisplayImage
+    ) -> Seen | None:
+        """What is seen through an optical see-through display."""
+        if self.prepared.exposure.see_through is None:
+            return None
+        return ost.seen_through(luminance, frame, self.prepared.exposure, image.rgb)
 
     def finish(self) -> None:
         """Nothing is pending."""

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from andon.files.cameras import camera_from_table, read_camera, write_camera
 from andon.files.depth import read_depth_array
+from andon.files.gaze import DistanceRecording, GazeRecording, PupilRecording, read_gaze
 from andon.files.limits import DEFAULT_LIMITS, Limits
 from andon.files.meshes import MeshFile, MeshLight, read_mesh
 from andon.files.paths import confined, open_bounded
@@ -35,12 +36,15 @@ from andon.files.volumes import ProbeVolume, read_volume, write_volume
 __all__ = [
     "DEFAULT_LIMITS",
     "READERS",
+    "DistanceRecording",
     "Distribution",
+    "GazeRecording",
     "Limits",
     "MeshFile",
     "MeshLight",
     "Picture",
     "ProbeVolume",
+    "PupilRecording",
     "Reader",
     "camera_from_table",
     "confined",
@@ -48,6 +52,7 @@ __all__ = [
     "open_bounded",
     "read_camera",
     "read_depth_array",
+    "read_gaze",
     "read_mesh",
     "read_photometry",
     "read_picture",

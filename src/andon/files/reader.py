@@ -28,7 +28,7 @@ class Reader:
     Attributes
     ----------
     name : ``kind.format``; the kind is ``picture``, ``depth``, ``mesh``, ``camera``, ``response``,
-        ``photometry`` or ``volume``.
+        ``photometry``, ``volume``, ``exposures`` or ``gaze``.
     suffixes : lower case, with the dot.
     read : the function that reads it.
     """

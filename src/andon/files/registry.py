@@ -11,6 +11,8 @@ from typing import Literal
 
 from andon.files.cameras import CAMERA_READERS
 from andon.files.depth import DEPTH_READERS
+from andon.files.exposures import EXPOSURE_READERS
+from andon.files.gaze import GAZE_READERS
 from andon.files.meshes import MESH_READERS
 from andon.files.photometry import PHOTOMETRY_READERS
 from andon.files.pictures import PICTURE_READERS
@@ -20,7 +22,17 @@ from andon.files.volumes import VOLUME_READERS
 
 __all__ = ["READERS", "Kind", "reader_for"]
 
-Kind = Literal["picture", "depth", "mesh", "camera", "response", "photometry", "volume"]
+Kind = Literal[
+    "picture",
+    "depth",
+    "mesh",
+    "camera",
+    "response",
+    "photometry",
+    "volume",
+    "exposures",
+    "gaze",
+]
 
 READERS: tuple[Reader, ...] = (
     *PICTURE_READERS,
@@ -30,6 +42,8 @@ READERS: tuple[Reader, ...] = (
     *RESPONSE_READERS,
     *PHOTOMETRY_READERS,
     *VOLUME_READERS,
+    *EXPOSURE_READERS,
+    *GAZE_READERS,
 )
 
 

@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.quantities import Geometry
+from andon.spaces import transform_points
 
 __all__ = [
+    "MAX_HIGHLIGHTS",
     "MAX_SOLIDS",
     "Backdrop",
     "Ball",
@@ -18,6 +20,7 @@ __all__ = [
     "Closed",
     "Focus",
     "GlassModel",
+    "Highlight",
     "LensShape",
     "Slab",
     "Solid",
@@ -27,6 +30,8 @@ __all__ = [
 Float = NDArray[np.float64]
 Blur = Literal["optical", "gaussian", "paper", "off"]
 
+# Rows of the table of mirrored lamps on the GPU: the brightest are kept.
+MAX_HIGHLIGHTS = 16
 # Bits of the mask of what a ray is inside of, and rows of the table on the GPU.
 MAX_SOLIDS = 8
 
@@ -137,9 +142,44 @@ class Solid:
     casts_light: bool = True
 
     @property
+    def ball_around(self) -> tuple[Float, float]:
+        """Centre (3,), world, and radius in metres of a ball that holds the body."""
+        centre = np.zeros(3)
+        match self.shape:
+            case Ball(radius):
+                reach = radius
+            case Slab(half):
+                reach = float(np.linalg.norm(half))
+            case LensShape(rim, curvature, thickness):
+                # Caps rise over the rim, or sink below it, by less than the rim's radius.
+                high = max(abs(r) - np.sqrt(max(r * r - rim * rim, 0)) for r in curvature)
+                reach = float(np.hypot(rim, thickness / 2 + high))
+            case Closed(geometry):
+                low, high = geometry.positions.min(axis=0), geometry.positions.max(axis=0)
+                centre, reach = (low + high) / 2, float(np.linalg.norm(high - low) / 2)
+        return transform_points(self.world_from_glass, centre), reach
+
+    @property
     def is_dispersive(self) -> bool:
         """The channels have different indices."""
         return len(set(self.index)) > 1
+
+
+@dataclass(frozen=True)
+class Highlight:
+    """One lamp as one solid mirrors it.
+
+    Attributes
+    ----------
+    solid : which of the solids.
+    towards : (3,) position of the lamp in metres; where `distant`, unit direction towards it.
+    light : (3,) cd towards the solid; where `distant`, lx on a plane across.
+    """
+
+    solid: int
+    towards: Float
+    light: Float
+    distant: bool = False
 
 
 @dataclass(frozen=True)

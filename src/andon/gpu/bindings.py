@@ -23,6 +23,8 @@ _ENTRIES: dict[str, dict[str, Any]] = {
     "uint": {"texture": {"sample_type": "uint", "view_dimension": "2d"}},
     "depth": {"texture": {"sample_type": "depth", "view_dimension": "2d"}},
     "sampler": {"sampler": {"type": "non-filtering"}},
+    "smooth": {"texture": {"sample_type": "float", "view_dimension": "2d"}},
+    "linear sampler": {"sampler": {"type": "filtering"}},
     "depth array": {"texture": {"sample_type": "depth", "view_dimension": "2d-array"}},
 }
 
@@ -39,7 +41,8 @@ def bind_group(gpu: Gpu, resources: Mapping[int, tuple[str, Any]], label: str = 
     """A group of binding → (kind, texture view or buffer).
 
     Kinds: ``uniform``, ``storage`` (read-only), ``float``, ``float array``, ``uint``, ``depth``,
-    ``depth array``; floats are read by `textureLoad`, unfiltered. Seen by both shader stages.
+    ``depth array``, ``sampler``; floats are read by `textureLoad`, unfiltered. ``smooth`` are half
+    floats that a ``linear sampler`` interpolates. Seen by both shader stages.
     """
     import wgpu
 

@@ -85,3 +85,16 @@ class FullscreenPass:
             render.set_bind_group(index, bound.group)
         render.draw(3)
         render.end()
+
+    def encode_within(
+        self, encoder: Any, targets: Sequence[Any], within: tuple[int, int, int, int]
+    ) -> None:
+        """Records the pass over x, y, width, height in pixels; what is beside it stays."""
+        attachments = [color_attachment(view, load=True) for view in targets]
+        render = encoder.begin_render_pass(label=self.label, color_attachments=attachments)
+        render.set_pipeline(self.pipeline)
+        for index, bound in enumerate(self.groups):
+            render.set_bind_group(index, bound.group)
+        render.set_scissor_rect(*within)
+        render.draw(3)
+        render.end()

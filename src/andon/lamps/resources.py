@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from andon.scene import Scene
     from andon.scene.lamp_parts import Shell as ShellTable
 
-__all__ = ["Emitters", "lamp_emitters", "lamp_texture", "shell_of"]
+__all__ = ["Emitters", "lamp_emitters", "lamp_texture", "mesh_in_metres", "shell_of"]
 
 Float = NDArray[np.float64]
 
@@ -65,6 +65,11 @@ def _source(scene: Scene, reference: str, field: str) -> _Source:
     unitless = path.suffix.lower() in UNITLESS_SUFFIXES
     scale = scene.scene.metres_per_unit if unitless else 1.0
     return _Source(str(path), file_stamp(path), scale, unitless and scene.scene.up != "y")
+
+
+def mesh_in_metres(scene: Scene, reference: str, field: str, /) -> Geometry:
+    """A mesh file in its pose of rest, in metres with +Y up; not to be written to."""
+    return _geometry(_source(scene, reference, field))
 
 
 def lamp_emitters(scene: Scene, reference: str, field: str, /) -> Emitters:
@@ -124,12 +129,8 @@ def _shell(
 
 def _texture(path: Path) -> Float:
     from andon.files.pictures import read_picture
-    from andon.responses import srgb_decode
 
-    picture = read_picture(path)
-    values = np.asarray(picture.values, np.float64)
-    if picture.encoding == "srgb":
-        values = np.asarray(srgb_decode(values / np.iinfo(picture.values.dtype).max), np.float64)
+    values = read_picture(path).linear()
     if not (np.isfinite(values).all() and (values >= 0).all()):
         raise InputError("has values that are negative or not finite", file=path)
     small = _smaller(values)

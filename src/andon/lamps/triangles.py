@@ -7,7 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["WELD", "area_vectors", "shared_edges", "triangle_areas", "unit_normals", "welded"]
+__all__ = [
+    "WELD",
+    "area_vectors",
+    "connected",
+    "shared_edges",
+    "triangle_areas",
+    "unit_normals",
+    "welded",
+]
 
 Float = NDArray[np.float64]
 Int = NDArray[np.int64]
@@ -87,3 +95,17 @@ def _turn(key: Int, forward: NDArray[np.bool_]) -> Int:
     turn = np.empty(len(both), np.int64)
     turn[order] = np.arange(len(ranked)) - begin
     return turn
+
+
+def connected(count: int, pairs: Int, /) -> Int:
+    """Number of the connected part (count,) of each of `count` things, from 0; `pairs` (k, 2)."""
+    label = np.arange(count)
+    while len(pairs):
+        lowest = label[pairs].min(axis=1)
+        update = label.copy()
+        np.minimum.at(update, label[pairs].ravel(), np.repeat(lowest, 2))
+        update = update[update]  # halves the longest way to go
+        if (update == label).all():
+            break
+        label = update
+    return np.unique(label, return_inverse=True)[1].ravel()

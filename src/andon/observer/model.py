@@ -3,34 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Fixation", "GazeRecording"]
+from andon.files.gaze import DistanceRecording, GazeRecording
+
+__all__ = ["DistanceRecording", "Fixation", "GazeRecording", "GazeState"]
 
 Float = NDArray[np.float64]
+# A fixation that is measured; the last good one; none, so that the surface is looked at.
+GazeState = Literal["seen", "held", "fallback"]
 
 
-@dataclass(frozen=True)
-class GazeRecording:
-    """Eye rays over time, in one frame of reference.
-
-    Attributes
-    ----------
-    times_seconds : (n,) rising; from the first sample.
-    origins_m : (n, 2, 3) centres of the left and the right eye; NaN: missing.
-    directions : (n, 2, 3) unit; NaN: missing.
-    confidence : (n,) 0…1; 1 where the file has none.
-    """
-
-    times_seconds: Float
-    origins_m: Float
-    directions: Float
-    confidence: Float
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Fixation:
     """Where both eyes look: vergences in dioptres, a series of them.
 
@@ -38,9 +25,10 @@ class Fixation:
     ----------
     times_seconds : (n,)
     dioptres : (n,) 1/distance from the point between the eyes; NaN where `good` is False.
-    gap_degrees : (n,) how much the rays miss each other, seen from the eyes.
+    gap_degrees : (n,) how much the rays miss each other, seen from the eyes; NaN: no rays.
     good : (n,) bool: not a blink, not diverging, both eyes, confident, small gap.
-    rejected : reason → number of samples.
+    rejected : reason → number of samples; each rejected sample has one reason, the first of
+        `andon.observer.gaze.REASONS` that holds.
     """
 
     times_seconds: Float

@@ -226,7 +226,7 @@ class Display(Table):
         default="none",
         description="none: clips each channel, as a camera does; hue: what is brighter than white "
         "fades to white and keeps its hue (lamps); reinhard: compresses; fusion: Mertens exposure "
-        "fusion.",
+        "fusion of what five neutral filters from 100 to 6.25 % would show.",
     )
     peak_luminance_cd_m2: Positive | None = Field(
         default=None,
@@ -235,6 +235,11 @@ class Display(Table):
     transmittance: Fraction = Field(
         default=1.0,
         description="τ of an optical see-through display: share of real light that passes.",
+    )
+    compensation: bool = Field(
+        default=True,
+        description="Of mode ost. true: takes the real light into account that passes; false: "
+        "shows what is virtual as it is, so that the room shines through it.",
     )
     dither: bool = Field(
         default=False,

@@ -51,6 +51,9 @@ def rows() -> tuple[Row, ...]:
         area_scene,
         areas,
         caustic,
+        gaze,
+        glass,
+        glass_blur,
         harmonics,
         lampshade,
         penumbra,
@@ -74,5 +77,8 @@ def rows() -> tuple[Row, ...]:
         *harmonics.ROWS,
         *probe_light.ROWS,
         *probe_space.ROWS,
+        *gaze.ROWS,
+        *glass.ROWS,
+        *glass_blur.ROWS,
         *caustic.ROWS,
     )

@@ -28,7 +28,14 @@ from andon.files.pictures.jpeg import JPEG_SIGNATURE, decode_jpeg
 from andon.files.pictures.model import Picture
 from andon.files.pictures.png import PNG_SIGNATURE, decode_png
 from andon.files.pictures.rgbe import read_hdr
-from andon.files.pictures.write import write_exr, write_jpeg, write_npy, write_picture, write_png
+from andon.files.pictures.write import (
+    write_exr,
+    write_hdr,
+    write_jpeg,
+    write_npy,
+    write_picture,
+    write_png,
+)
 from andon.files.reader import Reader, choose_reader
 
 __all__ = [
@@ -37,6 +44,7 @@ __all__ = [
     "decode_picture",
     "read_picture",
     "write_exr",
+    "write_hdr",
     "write_jpeg",
     "write_npy",
     "write_picture",

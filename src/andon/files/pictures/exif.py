@@ -1,11 +1,11 @@
-"""The two facts that a photograph's EXIF data tell us: which way is up, and how wide it sees."""
+"""What a photograph's EXIF data tell us: which way is up, how wide it sees, how it was exposed."""
 
 from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,8 @@ __all__ = ["ExifFacts", "apply_orientation", "hfov_degrees", "parse_exif"]
 
 # Exif 2.32 (CIPA DC-008-2019): 4.6.4 Orientation, 4.6.5 Exif IFD pointer, FocalLengthIn35mmFilm.
 ORIENTATION, EXIF_IFD, FOCAL_35MM = 0x0112, 0x8769, 0xA405
+# Exif 2.32, 4.6.5: ExposureTime (s), FNumber, PhotographicSensitivity (ISO).
+EXPOSURE = {"exposure_seconds": 0x829A, "f_number": 0x829D, "iso": 0x8827}
 
 # The equivalence is by the diagonal angle of view; a 36 mm × 24 mm frame's diagonal in mm.
 FILM_DIAGONAL_MM = math.hypot(36.0, 24.0)
@@ -23,10 +25,18 @@ FILM_DIAGONAL_MM = math.hypot(36.0, 24.0)
 
 @dataclass(frozen=True)
 class ExifFacts:
-    """Attributes: `orientation` 1…8 as in EXIF; `focal_35mm` in mm, or None where not stated."""
+    """What an EXIF block states.
+
+    Attributes
+    ----------
+    orientation : 1…8 as in EXIF.
+    focal_35mm : mm, or None where not stated.
+    exposure : those of `exposure_seconds`, `f_number` and `iso` that are stated, each > 0.
+    """
 
     orientation: int = 1
     focal_35mm: float | None = None
+    exposure: dict[str, float] = field(default_factory=dict[str, float])
 
 
 def parse_exif(data: bytes | None, file: str) -> ExifFacts:
@@ -41,8 +51,9 @@ def parse_exif(data: bytes | None, file: str) -> ExifFacts:
             exif = Image.Exif()
             exif.load(data)
             orientation: Any = exif.get(ORIENTATION, 1)
-            focal: Any = exif.get_ifd(EXIF_IFD).get(FOCAL_35MM)
-            focal = float(focal) if focal is not None else 0.0
+            details: Any = exif.get_ifd(EXIF_IFD)
+            focal = _number(details.get(FOCAL_35MM))
+            exposure = {name: _number(details.get(tag)) for name, tag in EXPOSURE.items()}
     except Exception as error:  # a damaged block raises almost anything in there
         raise InputError(
             "its EXIF block must be sound", file=file, remedy="strip the EXIF data"
@@ -50,7 +61,15 @@ def parse_exif(data: bytes | None, file: str) -> ExifFacts:
     # 0 means "unknown" in the standard for both entries.
     if orientation not in range(1, 9):
         orientation = 1
-    return ExifFacts(orientation, focal if math.isfinite(focal) and focal > 0 else None)
+    return ExifFacts(orientation, focal, {k: v for k, v in exposure.items() if v is not None})
+
+
+def _number(value: Any) -> float | None:
+    """A finite number > 0, of several the first; None for what is not stated, or unknown (0)."""
+    if isinstance(value, tuple):
+        value = next(iter(cast("tuple[Any, ...]", value)), None)
+    number = float(value) if value is not None else 0.0
+    return number if math.isfinite(number) and number > 0 else None
 
 
 def apply_orientation(values: NDArray[Any], orientation: int) -> NDArray[Any]:

@@ -76,7 +76,8 @@ def read_exr(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> Picture:
         matrix = rec709_from_chromaticities(part.chromaticities, str(path))
         if matrix is not None:
             values = (values @ matrix.T).astype(np.float32)
-    return Picture(part.placed(values, 0.0), "linear", attributes=part.attributes)
+    alpha = None if "A" not in part.channels else part.placed(part.channels["A"], 0.0)
+    return Picture(part.placed(values, 0.0), "linear", attributes=part.attributes, alpha=alpha)
 
 
 def read_exr_part(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> ExrPart:

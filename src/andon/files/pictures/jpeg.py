@@ -35,4 +35,4 @@ def decode_jpeg(data: bytes, file: str, limits: Limits = DEFAULT_LIMITS) -> Pict
         image = convert_8bit(image, opened, file)
     values = apply_orientation(np.asarray(image.convert("RGB")), facts.orientation)
     hfov = hfov_degrees(facts, values.shape[1], values.shape[0])
-    return Picture(values, "srgb", icc=name, hfov_degrees=hfov)
+    return Picture(values, "srgb", icc=name, hfov_degrees=hfov, attributes=dict(facts.exposure))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,9 @@ from andon.files.pictures.icc import convert_8bit, convert_16bit, is_srgb, open_
 from andon.files.pictures.model import Picture
 from andon.files.pictures.pillow import guarded, open_image
 
+if TYPE_CHECKING:
+    from PIL import Image
+
 __all__ = ["PNG_SIGNATURE", "decode_png", "decode_png_raw"]
 
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
@@ -29,29 +32,34 @@ PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 def decode_png(data: bytes, file: str, limits: Limits = DEFAULT_LIMITS) -> Picture:
     """A PNG picture as (H, W, 3) uint8 or uint16 sRGB, upright; `file` names it in messages.
 
-    Palettes are expanded, gray is repeated, alpha is dropped without compositing (PNG stores
-    colour straight), an ICC profile is converted, EXIF's orientation is applied.
+    Palettes are expanded, gray is repeated, alpha is kept apart (PNG stores colour straight), an
+    ICC profile is converted, EXIF's orientation is applied.
     """
     chunks = _check_chunks(data, file, limits)
     image = open_image(data, "PNG", file)
     profile: bytes | None = image.info.get("icc_profile")
     opened, name = open_profile(profile, file) if profile else (None, None)
     if chunks["IHDR"][8] == 16:
-        values = _rgb(_decode_16bit(data, file))
+        stored = _decode_16bit(data, file)
+        alpha = stored[..., -1] if stored.ndim == 3 and stored.shape[2] in (2, 4) else None
+        values = _rgb(stored)
         if profile and not is_srgb(opened, "RGB" if chunks["IHDR"][9] & 2 else "L", file):
             values = convert_16bit(values, profile, file)
     else:
         gray = image.mode in ("1", "L", "LA")
         with guarded("PNG", file):
+            alpha = _alpha_8bit(image)
             image = image.convert("L" if gray else "RGB")
         if opened is not None and not is_srgb(opened, image.mode, file):
             image = convert_8bit(image, opened, file)
         values = _rgb(np.asarray(image))
     facts = parse_exif(chunks.get("eXIf"), file)
     values = apply_orientation(values, facts.orientation)
-    attributes = {"gamma": image.info["gamma"]} if "gamma" in image.info else {}
+    if alpha is not None:
+        alpha = apply_orientation(alpha / np.float32(np.iinfo(alpha.dtype).max), facts.orientation)
+    gamma = {"gamma": image.info["gamma"]} if "gamma" in image.info else {}
     hfov = hfov_degrees(facts, values.shape[1], values.shape[0])
-    return Picture(values, "srgb", icc=name, hfov_degrees=hfov, attributes=attributes)
+    return Picture(values, "srgb", name, hfov, attributes=gamma | facts.exposure, alpha=alpha)
 
 
 def decode_png_raw(data: bytes, file: str, limits: Limits = DEFAULT_LIMITS) -> NDArray[Any]:
@@ -113,6 +121,13 @@ def _decode_16bit(data: bytes, file: str) -> NDArray[np.uint16]:
     if values.ndim == 3 and values.shape[2] >= 3:
         values = values[..., [2, 1, 0, *range(3, values.shape[2])]]
     return values.astype(np.uint16, copy=False)
+
+
+def _alpha_8bit(image: Image.Image) -> NDArray[np.uint8] | None:
+    """(H, W) of a picture with an alpha channel or a transparent colour; of others None."""
+    if image.mode not in ("LA", "PA", "RGBA") and "transparency" not in image.info:
+        return None
+    return np.asarray(image.convert("RGBA").getchannel("A"))
 
 
 def _rgb(values: NDArray[Any]) -> NDArray[Any]:

@@ -1,4 +1,4 @@
-"""Writers of pictures: PNG and JPEG for people, EXR and NPY for machines. All are atomic."""
+"""Writers of pictures: PNG and JPEG for people, EXR, HDR and NPY for machines. All are atomic."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from andon.files.pictures.exr import openexr
 from andon.files.pictures.primaries import REC709_XY
 from andon.quantities import Photometry
 
-__all__ = ["write_exr", "write_jpeg", "write_npy", "write_picture", "write_png"]
+__all__ = ["write_exr", "write_hdr", "write_jpeg", "write_npy", "write_picture", "write_png"]
 
 JPEG_QUALITY = 95  # with full chroma; below that block edges show in dark gradients
 
@@ -97,6 +97,23 @@ def write_exr(
             raise OSError(str(error)) from error
 
     return write_atomically(path, fill)
+
+
+def write_hdr(path: str | Path, values: NDArray[Any]) -> Path:
+    """Write (H, W, 3) linear Rec.709 light, finite and ≥ 0, as a Radiance picture (RGBE).
+
+    1 % steps and no unit; `write_exr` keeps float32 and says what the numbers are.
+    """
+    import cv2
+
+    _check_array(values, path, (np.float16, np.float32, np.float64))
+    if values.ndim != 3:
+        raise InputError(f"the array must be (H, W, 3), got {values.shape}", file=path)
+    done, encoded = cv2.imencode(".hdr", np.ascontiguousarray(values[..., ::-1], np.float32))
+    if not done:
+        raise MachineError(f"{path}: OpenCV could not encode the Radiance picture")
+    # Other readers take the magic word of Radiance's own programs only.
+    return write_bytes(path, encoded.tobytes().replace(b"#?RGBE", b"#?RADIANCE", 1))
 
 
 def write_npy(path: str | Path, values: NDArray[Any]) -> Path:

@@ -11,3 +11,8 @@ fn ray_planar(pixel: vec2f) -> vec3f {
 fn world_ray(pixel: vec2f) -> vec3f {
   return world_direction(ray_planar(pixel));
 }
+
+fn pixel_steradians(pixel: vec2f) -> f32 {
+  let elevation = (0.5 - pixel.y / view.size.y) * PI;
+  return 2.0 * PI * PI * cos(elevation) / (view.size.x * view.size.y);
+}

@@ -8,3 +8,9 @@ fn ray_planar(pixel: vec2f) -> vec3f {
 fn world_ray(pixel: vec2f) -> vec3f {
   return view.ray_origin + pixel.x * view.ray_column + pixel.y * view.ray_row;
 }
+
+// Solid angle of a pixel: its area in the plane at depth 1, seen at a slant.
+fn pixel_steradians(pixel: vec2f) -> f32 {
+  let slant = inverseSqrt(dot(ray_planar(pixel), ray_planar(pixel)));
+  return slant * slant * slant / (view.focal.x * view.focal.y);
+}

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.lamps.triangles import WELD, triangle_areas, welded
+from andon.lamps.triangles import WELD, connected, triangle_areas, welded
 
 __all__ = ["Layer", "clean_layer", "rims"]
 
@@ -72,7 +72,7 @@ def clean_layer(positions: Float, triangles: NDArray[np.integer], /) -> Layer:  
         raise InputError("has no triangle with an area", field=FIELD)
     wound = wound[source].astype(np.int64)
     pairs, same_way = _neighbours(wound)
-    part = _connected(len(wound), pairs)
+    part = connected(len(wound), pairs)
     layer = Layer(points, wound, source, np.zeros(len(wound), np.bool_), part)
     return layer.turned(_turns(len(wound), pairs, same_way)) if same_way.any() else layer
 
@@ -100,20 +100,6 @@ def _neighbours(triangles: Int) -> tuple[Int, NDArray[np.bool_]]:
     first, second = order[at], order[at + 1]
     one_way = edges[first, 0] == edges[second, 0]
     return np.stack([owner[first], owner[second]], axis=1), one_way
-
-
-def _connected(count: int, pairs: Int) -> Int:
-    """Number of the connected part (count,) of each thing, from 0."""
-    label = np.arange(count)
-    while len(pairs):
-        lowest = label[pairs].min(axis=1)
-        update = label.copy()
-        np.minimum.at(update, label[pairs].ravel(), np.repeat(lowest, 2))
-        update = update[update]  # halves the longest way to go
-        if (update == label).all():
-            break
-        label = update
-    return np.unique(label, return_inverse=True)[1].ravel()
 
 
 def _turns(count: int, pairs: Int, same_way: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -1,0 +1,259 @@
+"""Glass of a scene for both engines: bodies, mirrored lamps, and what the eyes are focused on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.composite.model import Ambient
+from andon.engines.gaze import SceneGaze, gaze_of
+from andon.engines.probes import SceneProbes
+from andon.glass.backdrops.environment import environment_of
+from andon.glass.focus import Distances, LayerVergences, crossing_dioptres, layer_vergences
+from andon.glass.layers import Layered
+from andon.glass.load import check_eye, solids_of
+from andon.glass.model import MAX_HIGHLIGHTS, Backdrop, Ball, Focus, GlassModel, Highlight, Solid
+from andon.glass.report import GlassReport
+from andon.lamps import AreaLamp, DirectionalLamp, HemisphereLamp, Lamp, SkyLamp
+from andon.observer.pupil import pupil_mm
+from andon.quantities import CameraFrame, photometric
+from andon.rays import RayScene
+from andon.scene import Scene
+from andon.surface.model import SurfaceModel
+from andon.transport.direct import reference as direct
+from andon.transport.direct.balls.model import GlassBall
+from andon.transport.direct.casters import OBJECTS, REAL, Casters, ShadowRays
+from andon.transport.probes.light import probe_coefficients
+
+__all__ = ["SceneGlass", "glass_of"]
+
+Float = NDArray[np.float64]
+
+# Pupil of relative scenes, which do not say how bright anything is: a lit room in the evening.
+PUPIL_MM = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class SceneGlass:
+    """Glass of a scene, ready for both engines.
+
+    Attributes
+    ----------
+    model : bodies and how they are blurred.
+    gaze : what the eyes are focused on over time; None: everything is sharp.
+    vergences : of the layers, for the point between the eyes; None where no ray gets through.
+    eyes : one or two positions (3,).
+    distances : to the first body's backdrop, see `andon.glass.focus`.
+    surface : geometry that lamps are hidden by, for what is mirrored.
+    ambient : the light of the photograph.
+    standing_lux : (3,) lx that stickers stand in beside the light of the lamps: what is left of
+        E0, or the mean of the probes around the first body.
+    """
+
+    model: GlassModel
+    gaze: SceneGaze | None
+    vergences: LayerVergences
+    eyes: tuple[Float, ...]
+    distances: Distances
+    surface: SurfaceModel
+    ambient: Ambient
+    standing_lux: Float
+
+    @property
+    def dimming(self) -> tuple[float, float, float]:
+        """What is left of the light of the photograph."""
+        return self.ambient.dimming
+
+    @property
+    def balls(self) -> tuple[GlassBall, ...]:
+        """Bodies that bend the light of lamps."""
+        return tuple(
+            GlassBall(
+                solid.world_from_glass[:3, 3],
+                solid.shape.radius_m,
+                solid.index,
+                solid.absorption_per_m,
+            )
+            for solid in self.model.solids
+            if isinstance(solid.shape, Ball) and solid.casts_light
+        )
+
+    @cached_property
+    def _rays(self) -> ShadowRays:
+        still = ((REAL, self.surface.occluder.geometry), (OBJECTS, self.surface.casters))
+        return ShadowRays(Casters(still))
+
+    def report(self, layered: Layered, focus: Focus | None, /) -> GlassReport:
+        """What is worth knowing about a frame's glass."""
+        layers, is_glass = layered.layers, layered.layers.coverage > 0
+        first = self.model.solids[0]
+        blurs = {
+            name: float(np.median(getattr(layers, f"{name}_px")[is_glass]))
+            if is_glass.any()
+            else 0.0
+            for name in ("surface", "refracted", "reflected")
+        }
+        return GlassReport(
+            focus,
+            self.model.pupil_m * 1000,
+            self.vergences,
+            first.interfaces,
+            self._other_vergences,
+            self._crossing_dioptres,
+            layered.counts,
+            blurs,
+        )
+
+    @cached_property
+    def _other_vergences(self) -> LayerVergences:
+        first, *rest = self.model.solids
+        other = replace(first, interfaces=3 - first.interfaces)
+        middle = np.mean(self.eyes, axis=0)
+        return layer_vergences((other, *rest), middle, self.distances)
+
+    @cached_property
+    def _crossing_dioptres(self) -> float | None:
+        if len(self.eyes) < 2:
+            return None
+        return crossing_dioptres(self.model.solids, (self.eyes[0], self.eyes[1]), self.distances)
+
+    def focus(self, time_seconds: float, /) -> Focus | None:
+        """What is in focus at a time; None: everything."""
+        return None if self.gaze is None else self.gaze.focus(time_seconds)
+
+    def highlights(self, lamps: Sequence[Lamp], /) -> tuple[Highlight, ...]:
+        """Lamps as the bodies mirror them, the brightest `MAX_HIGHLIGHTS`.
+
+        A lamp counts with the light that it sends to a body's middle; it is mirrored by all of the
+        body, or where something that stands still hides it from the middle, by none of it.
+        """
+        found = [
+            one
+            for (number, solid), lamp in product(enumerate(self.model.solids), lamps)
+            if (one := self._highlight(number, solid, lamp)) is not None
+        ]
+        found.sort(key=lambda one: -float(photometric(one.light)))
+        return tuple(found[:MAX_HIGHLIGHTS])
+
+    def _highlight(self, number: int, solid: Solid, lamp: Lamp) -> Highlight | None:
+        middle, _ = solid.ball_around
+        if isinstance(lamp, SkyLamp | HemisphereLamp):
+            return None  # all around, not a highlight
+        distant = isinstance(lamp, DirectionalLamp)
+        place = getattr(lamp, "position_m", None)
+        if place is None and not distant:
+            place = _middle_of_area(lamp)
+        reach = -lamp.direction if isinstance(lamp, DirectionalLamp) else place - middle
+        distance = float(np.linalg.norm(reach))
+        if distance == 0:
+            return None
+        across = (reach / distance)[None]
+        lux = direct.illuminance(lamp, middle[None], across)[0]
+        if isinstance(lamp, AreaLamp):
+            share = direct.visible_share(lamp, middle[None], across, middle[None], self._rays)[0]
+        else:
+            share = direct.visibility(lamp, middle[None], self._rays)[0]
+        light = lux * share * (1.0 if distant else distance**2)
+        if not np.all(light >= 0) or not light.any():
+            return None  # light that is taken away, or none
+        return Highlight(number, across[0] if distant else place, light, distant)
+
+
+def _middle_of_area(lamp: Lamp) -> Float:
+    """(3,) of a lamp that is made of points."""
+    for name in ("ends_m", "vertices_m", "positions_m", "corners_m"):
+        points = getattr(lamp, name, None)
+        if points is not None:
+            return np.asarray(points, float).reshape(-1, 3).mean(axis=0)
+    raise TypeError(type(lamp).__name__)
+
+
+def glass_of(
+    scene: Scene,
+    frames: Mapping[str, CameraFrame],
+    surface: SurfaceModel,
+    ambient: Ambient,
+    lamps: Sequence[Lamp],
+    probes: SceneProbes | None,
+    /,
+) -> SceneGlass | None:
+    """The glass of a scene, or None. Raises `InputError` for what does not fit."""
+    if not scene.glass:
+        return None
+    solids = solids_of(scene)
+    eyes = {name: frame.view.position for name, frame in frames.items()}
+    check_eye(solids, np.array(list(eyes.values())))
+    left = np.asarray(ambient.dimming) * ambient.mean_lux
+    gaze = scene.gaze
+    model = GlassModel(
+        solids,
+        blur="off" if gaze is None else gaze.blur,
+        pupil_m=_pupil_mm(scene, frames) / 1000,
+        defocus_frame=gaze is not None and gaze.defocus == "frame",
+        environment=_environments(solids, left, lamps, probes),
+    )
+    middle = np.mean(list(eyes.values()), axis=0)
+    distances = _distances(solids[0].backdrop, middle, surface)
+    vergences = layer_vergences(solids, middle, distances)
+    looking = None if gaze is None else gaze_of(scene, gaze, model.blur, vergences)
+    # ∫ over a half space of a mean luminance L is π·L; L is L00·Y00.
+    mean = np.pi * model.environment[0, 0] * 0.5 / np.sqrt(np.pi)
+    standing = left if probes is None else mean
+    both = tuple(eyes.values())
+    return SceneGlass(model, looking, vergences, both, distances, surface, ambient, standing)
+
+
+def _pupil_mm(scene: Scene, frames: Mapping[str, CameraFrame]) -> float:
+    if scene.observer.pupil_mm is None and scene.photometry == "relative":
+        return PUPIL_MM
+    means = [
+        float(photometric(frame.linear.reshape(-1, 3).mean(axis=0))) * frame.luminance_per_unit
+        for frame in frames.values()
+    ]
+    return pupil_mm(scene.observer, float(np.mean(means)))
+
+
+def _environments(
+    solids: Sequence[Solid], ambient_lux: Float, lamps: Sequence[Lamp], probes: SceneProbes | None
+) -> Float:
+    """(n, 9, 3) what surrounds each body: what probes say of its middle, or E0 and skies."""
+    if probes is None:
+        return np.broadcast_to(environment_of(ambient_lux, lamps), (len(solids), 9, 3)).copy()
+    middles = np.array([solid.ball_around[0] for solid in solids])
+    found = np.zeros((len(solids), 9, 3))
+    rows = probe_coefficients(probes.dimmed, middles)[:, :9]
+    found[:, : rows.shape[1]] = rows
+    return found
+
+
+def _distances(backdrop: Backdrop, eye: Float, surface: SurfaceModel) -> Distances:
+    """Metres from points along directions to the backdrop, inf where it is missed."""
+    if backdrop.kind == "texture":
+        normal = np.cross(backdrop.right_m, backdrop.up_m)
+
+        def to_plane(origins: Float, directions: Float) -> Float:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                reach = ((backdrop.centre_m - origins) @ normal) / (directions @ normal)
+            return np.where(reach > 0, reach, np.inf)
+
+        return to_plane
+    if backdrop.kind == "frame":
+
+        def to_sphere(origins: Float, directions: Float) -> Float:
+            away = origins - eye
+            along = np.einsum("ni,ni->n", away, directions)
+            half = along**2 - np.einsum("ni,ni->n", away, away) + backdrop.distance_m**2
+            return np.where(half > 0, np.sqrt(np.maximum(half, 0)) - along, np.inf)
+
+        return to_sphere
+    # Thinned triangles: millimetres of backdrop are nothing to a vergence.
+    geometry = surface.shadow_casters
+    if not len(geometry.triangles):
+        return lambda origins, directions: np.full(len(origins), np.inf)
+    rays = RayScene(geometry)
+    return lambda origins, directions: rays.first_hits(origins, directions).distance

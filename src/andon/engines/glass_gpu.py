@@ -1,0 +1,178 @@
+"""Glass of one view on the GPU: trace, light what sticks to it, blur, compose."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon import gbuffer
+from andon.composite import stage as composite
+from andon.composite.records import AMBIENT_RECORD, pack_ambient
+from andon.engines.glass import SceneGlass
+from andon.engines.moment import Moment
+from andon.glass.backdrops.buffers import BackdropBuffers, FrameLevels
+from andon.glass.defocus.kernels import MAX_BLUR_PX
+from andon.glass.defocus.stage import DefocusStage
+from andon.glass.layers import Counts, Layered, Layers
+from andon.glass.model import Focus
+from andon.glass.trace_stage import SolidBuffers, TraceStage
+from andon.gpu.bindings import bind_group
+from andon.gpu.device import Gpu
+from andon.gpu.passes import FullscreenPass
+from andon.gpu.textures import Texture, uniform_buffer, write_buffer
+from andon.lamps import Lamp
+from andon.quantities import CameraFrame
+from andon.surface.stage import GpuSurface
+from andon.transport.direct import stage as direct
+
+__all__ = ["GlassBuffers", "GlassView"]
+
+FRAME = "andon/frame.wgsl"
+# Light times what reflects it, which is there already.
+TIMES = {
+    "color": {"operation": "add", "src_factor": "dst", "dst_factor": "zero"},
+    "alpha": {"operation": "add", "src_factor": "zero", "dst_factor": "one"},
+}
+LOST, MISSED, CLAMPED, BESIDE = 1, 2, 4, 8
+
+
+class GlassBuffers:
+    """What both eyes share."""
+
+    def __init__(self, gpu: Gpu, glass: SceneGlass, luminance_per_unit: float) -> None:
+        self.glass = glass
+        model = glass.model
+        self.solids = SolidBuffers(gpu, model.solids)
+        self.backdrops = BackdropBuffers(
+            gpu, model.solids, model.environment, luminance_per_unit, glass.dimming
+        )
+        self.sees_frame = any(s.backdrop.kind != "texture" for s in model.solids)
+
+    def update(self, lamps: tuple[Lamp, ...]) -> None:
+        """Lamps of a moment, as the bodies mirror them."""
+        self.solids.write_highlights(self.glass.highlights(lamps))
+
+
+class GlassView:
+    """All of one view's glass that lives on the GPU; made once."""
+
+    def __init__(
+        self,
+        gpu: Gpu,
+        shared: GlassBuffers,
+        frame: CameraFrame,
+        seen: GpuSurface,
+        luminance: Texture,
+        lit: tuple[dict[int, tuple[str, Any]], direct.DirectStage],
+    ) -> None:
+        """`lit`: bindings 2 to 5 of frame.wgsl, and the light of the lamps."""
+        self.gpu, self.shared, self.frame = gpu, shared, frame
+        view, model = frame.view, shared.glass.model
+        self._levels = FrameLevels(gpu, luminance)
+        self.trace = TraceStage(
+            gpu,
+            view,
+            shared.solids,
+            (seen.texture.view, seen.view_buffer),
+            shared.backdrops.group(self._levels.texture),
+            largest_px=MAX_BLUR_PX,
+        )
+        trace = self.trace
+        self._light = self._sticker_light(seen, *lit) if trace.stickers is not None else None
+        layers = (trace.refracted, trace.surface, trace.reflected, trace.sizes)
+        size = (view.width, view.height)
+        self._defocus = DefocusStage(gpu, *layers, luminance, model.blur, size)
+
+    def _sticker_light(
+        self, seen: GpuSurface, resources: dict[int, tuple[str, Any]], lamps: direct.DirectStage
+    ) -> FullscreenPass:
+        assert self.trace.stickers is not None
+        gpu, glass, view = self.gpu, self.shared.glass, self.frame.view
+        standing = uniform_buffer(gpu, AMBIENT_RECORD.dtype.itemsize, "standing")
+        record = pack_ambient(glass.ambient, self.frame.luminance_per_unit)
+        record["object_lux"] = glass.standing_lux
+        write_buffer(gpu, standing, record)
+        own: dict[int, tuple[str, Any]] = {
+            0: ("uint", self.trace.stickers.view),
+            1: ("uniform", seen.view_buffer),
+        }
+        groups = [
+            bind_group(gpu, own | resources | {2: ("uniform", standing)}, "stickers"),
+            lamps.group,
+        ]
+        return FullscreenPass(
+            gpu,
+            FRAME,
+            "sticker_light",
+            [self.trace.surface.format],
+            groups,
+            structs=gbuffer.STRUCTS | direct.STRUCTS | composite.STRUCTS,
+            variants=gbuffer.projection_variant(view) | lamps.variants,
+            blend=TIMES,
+        )
+
+    def encode(self, encoder: Any, moment: Moment) -> None:
+        """Records the glass over the view's luminance."""
+        within = self.trace.within
+        if within is None:
+            return
+        focus, model = moment.focus, self.shared.glass.model
+        blurs = focus is not None and model.blur != "off"
+        self.trace.focus(
+            focus.dioptres if focus is not None else 0.0,
+            model.pupil_m if blurs else 0.0,
+            self.frame.luminance_per_unit,
+            apparent=model.blur != "paper",
+        )
+        if self.shared.sees_frame:
+            self._levels.encode(encoder)
+        self.trace.encode_stickers(encoder)
+        self.trace.encode(encoder)
+        if self._light is not None:
+            self._light.encode_within(encoder, [self.trace.surface.view], within)
+        self._defocus.encode(encoder, within, self._largest(focus) if blurs else (0.0, 0.0, 0.0))
+
+    def _largest(self, focus: Focus | None) -> tuple[float, float, float]:
+        """No disc of the refracted image, the surface and the mirrored one is larger, px."""
+        assert focus is not None
+        model, view = self.shared.glass.model, self.frame.view
+        per_radian = 1 / float(np.sqrt(view.solid_angles().min()))
+        spans: list[float] = []
+        for solid in model.solids:
+            middle, radius = solid.ball_around
+            away = float(np.linalg.norm(middle - view.position))
+            ends = (1 / max(away - radius, 1e-3), 1 / (away + radius))
+            spans += [abs(end - focus.dioptres) for end in ends]
+        surface = max(spans) * model.pupil_m * per_radian
+        return MAX_BLUR_PX, min(surface, MAX_BLUR_PX), MAX_BLUR_PX
+
+    def read(self) -> Layered:
+        """The sharp layers as arrays, and their counts; waits for the device."""
+        unit = self.frame.luminance_per_unit
+        trace = self.trace
+        refracted, surface, reflected, sizes = (
+            one.read().astype(np.float64)
+            for one in (trace.refracted, trace.surface, trace.reflected, trace.sizes)
+        )
+        coverage = sizes[..., 0]
+        layers = Layers(
+            coverage,
+            refracted[..., :3] * unit,
+            surface[..., :3] * unit,
+            surface[..., 3],
+            reflected[..., :3] * unit,
+            refracted[..., 3],
+            sizes[..., 1],
+            reflected[..., 3],
+        )
+        return Layered(layers, _counted(coverage > 0, sizes[..., 2].astype(np.uint8)))
+
+
+def _counted(is_glass: NDArray[np.bool_], flags: NDArray[np.uint8]) -> Counts:
+    found = [int(np.count_nonzero(is_glass & (flags & bit > 0))) for bit in _BITS]
+    return Counts(int(np.count_nonzero(is_glass)), *found)
+
+
+_BITS = (LOST, MISSED, BESIDE, CLAMPED)

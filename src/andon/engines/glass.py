@@ -14,6 +14,7 @@ from andon.composite.model import Ambient
 from andon.engines.gaze import SceneGaze, gaze_of
 from andon.engines.probes import SceneProbes
 from andon.glass.backdrops.environment import environment_of
+from andon.glass.backdrops.paper import blur_metres
 from andon.glass.focus import Distances, LayerVergences, crossing_dioptres, layer_vergences
 from andon.glass.layers import Layered
 from andon.glass.load import check_eye, solids_of
@@ -94,6 +95,19 @@ class SceneGlass:
             for solid in self.model.solids
             if isinstance(solid.shape, Ball) and solid.casts_light
         )
+
+    @property
+    def backdrop_m(self) -> float:
+        """The paper's d_b: how far away the backdrop is, straight; infinite where there is none."""
+        straight = self.vergences.background_straight
+        return 1 / straight if straight > 0 else np.inf
+
+    def paper_blur_m(self, focus: Focus | None, /) -> float:
+        """The paper's D_b, by which it blurs the backdrop; 0 in the other modes."""
+        if focus is None or self.model.blur != "paper":
+            return 0.0
+        focus_m = 1 / focus.dioptres if focus.dioptres > 0 else np.inf
+        return blur_metres(self.model.pupil_m, self.backdrop_m, focus_m)
 
     @cached_property
     def _rays(self) -> ShadowRays:

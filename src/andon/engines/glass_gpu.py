@@ -12,11 +12,14 @@ from andon.composite import stage as composite
 from andon.composite.records import AMBIENT_RECORD, pack_ambient
 from andon.engines.glass import SceneGlass
 from andon.engines.moment import Moment
-from andon.glass.backdrops.buffers import BackdropBuffers, FrameLevels
+from andon.glass.backdrops.buffers import BackdropBuffers
+from andon.glass.backdrops.levels import FrameLevels
+from andon.glass.backdrops.paper import texels_per_metre
 from andon.glass.defocus.kernels import MAX_BLUR_PX
 from andon.glass.defocus.stage import DefocusStage
 from andon.glass.layers import Counts, Layered, Layers
 from andon.glass.model import Focus
+from andon.glass.screen import pixels_per_radian
 from andon.glass.trace_stage import SolidBuffers, TraceStage
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
@@ -46,13 +49,30 @@ class GlassBuffers:
         model = glass.model
         self.solids = SolidBuffers(gpu, model.solids)
         self.backdrops = BackdropBuffers(
-            gpu, model.solids, model.environment, luminance_per_unit, glass.dimming
+            gpu,
+            model.solids,
+            model.environment,
+            luminance_per_unit,
+            glass.dimming,
+            blurs=model.blur == "paper",
         )
+        self._blur_m = 0.0
         self.sees_frame = any(s.backdrop.kind != "texture" for s in model.solids)
 
     def update(self, lamps: tuple[Lamp, ...]) -> None:
         """Lamps of a moment, as the bodies mirror them."""
         self.solids.write_highlights(self.glass.highlights(lamps))
+
+
+    def blur(self, encoder: Any, blur_m: float) -> None:
+        """Records the paper's blur of the backdrops' pictures, where it has changed."""
+        if blur_m == self._blur_m:
+            return
+        self._blur_m = blur_m
+        for number, solid in enumerate(self.glass.model.solids):
+            if solid.backdrop.picture is not None:
+                per_m = texels_per_metre(solid.backdrop, 1.0, 1.0)
+                self.backdrops.encode_blur(encoder, number, per_m * blur_m)
 
 
 class GlassView:
@@ -70,7 +90,7 @@ class GlassView:
         """`lit`: bindings 2 to 5 of frame.wgsl, and the light of the lamps."""
         self.gpu, self.shared, self.frame = gpu, shared, frame
         view, model = frame.view, shared.glass.model
-        self._levels = FrameLevels(gpu, luminance)
+        self._levels = FrameLevels(gpu, luminance, blurs=model.blur == "paper")
         self.trace = TraceStage(
             gpu,
             view,
@@ -126,8 +146,11 @@ class GlassView:
             self.frame.luminance_per_unit,
             apparent=model.blur != "paper",
         )
+        blur_m = self.shared.glass.paper_blur_m(focus)
+        self.shared.blur(encoder, blur_m)
         if self.shared.sees_frame:
-            self._levels.encode(encoder)
+            per_m = pixels_per_radian(self.frame.view) / self.shared.glass.backdrop_m
+            self._levels.encode(encoder, per_m * blur_m)
         self.trace.encode_stickers(encoder)
         self.trace.encode(encoder)
         if self._light is not None:
@@ -138,7 +161,7 @@ class GlassView:
         """No disc of the refracted image, the surface and the mirrored one is larger, px."""
         assert focus is not None
         model, view = self.shared.glass.model, self.frame.view
-        per_radian = 1 / float(np.sqrt(view.solid_angles().min()))
+        per_radian = pixels_per_radian(view)
         spans: list[float] = []
         for solid in model.solids:
             middle, radius = solid.ball_around

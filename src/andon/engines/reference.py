@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,13 +11,17 @@ from andon.composite import reference as composite
 from andon.display import ost
 from andon.display import reference as display
 from andon.display.model import Seen
+from andon.engines.glass import SceneGlass
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import lampless_pixels, lit_pixels
 from andon.glass import reference as glass
 from andon.glass.backdrops.model import SceneOfView
+from andon.glass.backdrops.paper import preblurred, with_blurred_pictures
 from andon.glass.defocus import reference as defocus
 from andon.glass.layers import Layered
+from andon.glass.model import GlassModel
+from andon.glass.screen import pixels_per_radian
 from andon.glow import reference as glow
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface import reference as surface
@@ -43,6 +49,7 @@ class ReferenceEngine:
         self._surfaces: dict[str, Surface] = {}
         self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
         self._layered: Layered | None = None
+        self._blurred: tuple[float, GlassModel | None] = (0.0, None)
         self.maps_redrawn = 0
 
     def see(self, view_name: str, moment: Moment) -> Surface:
@@ -105,9 +112,10 @@ class ReferenceEngine:
         cd_m2 = np.asarray(luminance.cd_m2, np.float64)
         behind = SceneOfView(cd_m2, seen, frame.view, frame.luminance_per_unit, own.dimming)
         lamps = own.highlights(moment.lamps)
+        model, blurred = self._paper(own, behind, moment)
         self._layered = glass.layers_of(
-            own.model,
-            behind,
+            model,
+            blurred,
             moment.focus,
             lamps,
             lambda points, normals: own.standing_lux + self._lit(points, normals, moment),
@@ -118,6 +126,23 @@ class ReferenceEngine:
             beside = defocus.frame_blurred(cd_m2, sizes)
         layers = defocus.blurred(self._layered.layers, own.model.blur)
         return Luminance(layers.over(beside), self.prepared.photometry)
+
+    def _paper(
+        self, own: SceneGlass, behind: SceneOfView, moment: Moment
+    ) -> tuple[GlassModel, SceneOfView]:
+        """Bodies and frame with blurred backdrops, in mode ``paper``."""
+        blur_m = own.paper_blur_m(moment.focus)
+        if blur_m == 0:
+            return own.model, behind
+        if blur_m != self._blurred[0]:
+            solids = with_blurred_pictures(own.model.solids, blur_m)
+            self._blurred = blur_m, replace(own.model, solids=solids)
+        model = self._blurred[1]
+        assert model is not None
+        if all(solid.backdrop.kind == "texture" for solid in model.solids):
+            return model, behind
+        per_m = pixels_per_radian(behind.view) / own.backdrop_m
+        return model, behind.with_luminance(preblurred(behind.luminance, per_m, blur_m))
 
     def _lit(self, points: Float, normals: Float, moment: Moment) -> Float:
         """(n, 3) lux of the lamps at `points` (n, 3) with unit `normals` (n, 3)."""

@@ -20,7 +20,8 @@ Float = NDArray[np.float64]
 Distances = Callable[[Float, Float], Float]
 
 # Newton's steps towards the direction in which a backdrop's point is seen; each squares the error.
-STEPS = 12
+STEPS = 24
+HALVINGS = 12
 # Rings of rays around the middle of a body, for one that has a hole there.
 RINGS = 16
 # Of the backdrop's point, in metres: far below what a pixel shows.
@@ -127,23 +128,50 @@ def crossing_dioptres(
 def _direction_to(
     solids: tuple[Solid, ...], eye: Float, start: Float, point: Float
 ) -> Float | None:
-    """The direction (3,) in which `eye` sees `point` (3,), by Newton's method from `start`."""
-    direction: Float = start
+    """The direction (3,) in which `eye` sees `point` (3,), by Newton's method from `start`.
+
+    A step that would lead beside the glass, or no nearer, is halved.
+    """
+    here = _aim(solids, eye, start, point)
     for _ in range(STEPS):
-        right, down = perpendicular(direction)
-        seen = trace(solids, eye[None], direction[None], frame=(right[None], down[None]))
-        if seen.solid[0] < 0 or seen.status[0] != 0:
+        if here is None or np.linalg.norm(here.missed) < CLOSE_M:
+            break
+        step = here.step
+        for _ in range(HALVINGS):
+            there = _aim(solids, eye, here.direction + step, point)
+            if there is not None and np.linalg.norm(there.missed) < np.linalg.norm(here.missed):
+                break
+            step = step / 2
+        else:
             return None
-        origin, last = seen.exit_point[0], seen.exit_direction[0]
-        along = float((point - origin) @ last)
-        missed = point - origin - along * last
-        if np.linalg.norm(missed) < CLOSE_M:
-            return direction
-        moves = seen.pencil[0, 2:, 0] + along * seen.pencil[0, 2:, 1]  # (2, 3) per radian
-        step: Float = np.asarray(np.linalg.lstsq(moves.T, missed, rcond=None)[0], np.float64)
-        direction = direction + step[0] * right + step[1] * down
-        direction = direction / float(np.linalg.norm(direction))
-    return None
+        here = there
+    if here is None or np.linalg.norm(here.missed) >= CLOSE_M:
+        return None
+    return here.direction
+
+
+@dataclass(frozen=True)
+class _Aim:
+    """A ray of an eye: by how many metres it misses a point, and the turn that would mend that."""
+
+    direction: Float
+    missed: Float
+    step: Float
+
+
+def _aim(solids: tuple[Solid, ...], eye: Float, towards: Float, point: Float) -> _Aim | None:
+    """A ray towards a direction (3,) of any length; None if it does not get through the glass."""
+    direction: Float = towards / float(np.linalg.norm(towards))
+    right, down = perpendicular(direction)
+    seen = trace(solids, eye[None], direction[None], frame=(right[None], down[None]))
+    if seen.solid[0] < 0 or seen.status[0] != 0:
+        return None
+    origin, last = seen.exit_point[0], seen.exit_direction[0]
+    along = float((point - origin) @ last)
+    missed = point - origin - along * last
+    moves = seen.pencil[0, 2:, 0] + along * seen.pencil[0, 2:, 1]  # (2, 3) per radian
+    turn: Float = np.asarray(np.linalg.lstsq(moves.T, missed, rcond=None)[0], np.float64)
+    return _Aim(direction, missed, turn[0] * right + turn[1] * down)
 
 
 def _vergence_of_rays(eyes: tuple[Float, Float], directions: tuple[Float, Float]) -> float:

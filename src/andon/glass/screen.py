@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from andon.glass.model import MAX_SOLIDS, Ball, LensShape, Slab, Solid
 from andon.spaces import View, perpendicular, rotate, transform_points
 
-__all__ = ["MOST_CORNERS", "Rectangle", "outline_of", "rectangle_of"]
+__all__ = ["MOST_CORNERS", "Rectangle", "outline_of", "pixels_per_radian", "rectangle_of"]
 
 Float = NDArray[np.float64]
 # x, y, width, height in pixels
@@ -23,6 +23,11 @@ NEAREST_M = 1e-3
 # Corners of the polygon around a ball: 0.6 % more than its disc.
 BALL_CORNERS = 24
 MOST_CORNERS = BALL_CORNERS * MAX_SOLIDS
+
+
+def pixels_per_radian(view: View, /) -> float:
+    """Of the smallest pixel: angles times this are no fewer pixels anywhere."""
+    return 1 / float(np.sqrt(view.solid_angles().min()))
 
 
 def rectangle_of(solids: Sequence[Solid], view: View, /) -> Rectangle | None:

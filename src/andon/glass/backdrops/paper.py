@@ -15,12 +15,22 @@ Source: the paper on transparent objects, equations 4 to 7.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["blur_metres", "preblurred", "taps_of"]
+from andon.glass.model import Backdrop, Solid
+
+__all__ = [
+    "blur_metres",
+    "preblurred",
+    "taps_of",
+    "texels_per_metre",
+    "with_blurred_pictures",
+]
 
 Float = NDArray[np.float64]
 
@@ -28,11 +38,38 @@ Float = NDArray[np.float64]
 def blur_metres(pupil_m: float, backdrop_m: float, focus_m: float, /) -> float:
     """D_b, metres on the backdrop, of a pupil's diameter and two distances from the eye (> 0).
 
-    Source: equation 7; 0 for a focus at infinity has no meaning there: |d_b − d_f|/d_f → 1.
+    Source: equation 7; for distances at infinity its limits, and backdrops there are not blurred.
     """
+    if np.isinf(backdrop_m):
+        return 0.0
     if np.isinf(focus_m):
         return pupil_m
     return pupil_m * abs(backdrop_m - focus_m) / focus_m
+
+
+def texels_per_metre(backdrop: Backdrop, pixels_per_radian: float, backdrop_m: float, /) -> float:
+    """W_p/W_l: of a picture its own, of the frame that of its pixels `backdrop_m` away."""
+    if backdrop.kind == "texture" and backdrop.picture is not None:
+        return backdrop.picture.shape[1] / (2 * float(np.linalg.norm(backdrop.right_m)))
+    return pixels_per_radian / backdrop_m
+
+
+def with_blurred_pictures(solids: Sequence[Solid], blur_m: float, /) -> tuple[Solid, ...]:
+    """`solids` whose backdrops' pictures are blurred by `blur_m` metres; other kinds stay."""
+    return tuple(
+        solid
+        if solid.backdrop.picture is None
+        else replace(
+            solid,
+            backdrop=replace(
+                solid.backdrop,
+                picture=preblurred(
+                    solid.backdrop.picture, texels_per_metre(solid.backdrop, 1.0, 1.0), blur_m
+                ),
+            ),
+        )
+        for solid in solids
+    )
 
 
 def taps_of(kernel_texels: float, /) -> Float:

@@ -76,6 +76,6 @@ class BenchRow:
 
 def rows() -> tuple[BenchRow, ...]:
     """All rows, stage by stage."""
-    from andon.bench import areas, glow, probe_light, probes, relight
+    from andon.bench import areas, glass, glow, probe_light, probes, relight
 
-    return relight.ROWS + areas.ROWS + glow.ROWS + probes.ROWS + probe_light.ROWS
+    return relight.ROWS + areas.ROWS + glow.ROWS + glass.ROWS + probes.ROWS + probe_light.ROWS

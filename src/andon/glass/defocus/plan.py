@@ -21,10 +21,10 @@ ALL: Three = (True, True, True)
 
 # Levels with discs: half, a quarter and an eighth of the size.
 LEVELS = (1, 2, 3)
-# Diameter in pixels from which a level has all of the picture. Discs of 2.5 to 7 texels cost 9 to
-# 61 taps; against the reference a photograph in [0, 1] errs by 0.7/255 in the mean at the start of
-# a level (discs of 5, 13 px), 0.3 at its end. A Gaussian is smooth, so coarser levels hold it.
-FIRST_PX = {"optical": (5.0, 13.0, 36.0), "gaussian": (5.0, 9.0, 18.0)}
+# Diameter in pixels from which a level has all of the picture; the step before it is shared. Discs
+# of 3 to 8 texels cost 13 to 61 taps. Against the reference a photograph in [0, 1] errs in the mean
+# by 0.6/255 where a level begins, by 0.25/255 where it ends.
+FIRST_PX = (6.0, 15.0, 48.0)
 # The table of sizes: entries a texel of diameter, and the largest diameter in it.
 STEPS, LONGEST = 64, 16
 
@@ -46,17 +46,17 @@ class DiscPlan:
 
     def levels_of(self, disc_px: float, /) -> tuple[int, ...]:
         """The levels that take part where no disc is larger, coarsest last."""
-        first = FIRST_PX[self.shape]
+        first = FIRST_PX
         return tuple(n for n in LEVELS if disc_px > 0.85 * first[n - 1])
 
     def has_discs(self, level: int, least_px: float, /) -> bool:
         """Whether a layer with no disc smaller than this has any of the level; 0 is full size."""
-        first = FIRST_PX[self.shape]
+        first = FIRST_PX
         return level >= len(first) or least_px < first[level]
 
     def wgsl(self, level: int, blurs: Three = ALL, nears: Three = ALL, /) -> str:
         """The constants that stand in for kernel.wgsl; level 0 is full size."""
-        edges = (*FIRST_PX[self.shape], 4 * MAX_BLUR_PX)
+        edges = (*FIRST_PX, 4 * MAX_BLUR_PX)
         # Reducing by 1 3 3 1 and enlarging by 3 1 add 3/4 px² each, and 4 times that a level on.
         added = 1.5 * (4**level - 1) / 3 / 4**level
         return "\n".join(

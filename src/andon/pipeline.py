@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.display.model import Seen
 from andon.errors import InputError, MachineError, nearest_name
 from andon.quantities import (
     CameraFrame,
@@ -33,7 +34,6 @@ from andon.scene import Scene
 from andon.spaces import View
 
 if TYPE_CHECKING:
-    from andon.display.model import Seen
     from andon.engines.prepared import Prepared
     from andon.glass.layers import Layered
     from andon.glass.report import GlassReport

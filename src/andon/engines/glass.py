@@ -19,7 +19,19 @@ from andon.glass.layers import Layered
 from andon.glass.load import check_eye, solids_of
 from andon.glass.model import MAX_HIGHLIGHTS, Backdrop, Ball, Focus, GlassModel, Highlight, Solid
 from andon.glass.report import GlassReport
-from andon.lamps import AreaLamp, DirectionalLamp, HemisphereLamp, Lamp, SkyLamp
+from andon.lamps import (
+    AreaLamp,
+    DirectionalLamp,
+    DiskLamp,
+    HemisphereLamp,
+    Lamp,
+    MeshLamp,
+    PointLamp,
+    PolygonLamp,
+    SkyLamp,
+    SphereLamp,
+    TubeLamp,
+)
 from andon.observer.pupil import pupil_mm
 from andon.quantities import CameraFrame, photometric
 from andon.rays import RayScene
@@ -145,9 +157,7 @@ class SceneGlass:
         if isinstance(lamp, SkyLamp | HemisphereLamp):
             return None  # all around, not a highlight
         distant = isinstance(lamp, DirectionalLamp)
-        place = getattr(lamp, "position_m", None)
-        if place is None and not distant:
-            place = _middle_of_area(lamp)
+        place = np.zeros(3) if isinstance(lamp, DirectionalLamp) else _middle_of_lamp(lamp)
         reach = -lamp.direction if isinstance(lamp, DirectionalLamp) else place - middle
         distance = float(np.linalg.norm(reach))
         if distance == 0:
@@ -164,13 +174,19 @@ class SceneGlass:
         return Highlight(number, across[0] if distant else place, light, distant)
 
 
-def _middle_of_area(lamp: Lamp) -> Float:
-    """(3,) of a lamp that is made of points."""
-    for name in ("ends_m", "vertices_m", "positions_m", "corners_m"):
-        points = getattr(lamp, name, None)
-        if points is not None:
-            return np.asarray(points, float).reshape(-1, 3).mean(axis=0)
-    raise TypeError(type(lamp).__name__)
+def _middle_of_lamp(lamp: PointLamp | AreaLamp) -> Float:
+    """(3,) of a lamp that has a place."""
+    match lamp:
+        case PointLamp() | SphereLamp() | DiskLamp():
+            return lamp.position_m
+        case TubeLamp():
+            return lamp.ends_m.mean(axis=0)
+        case PolygonLamp():
+            return lamp.vertices_m.mean(axis=0)
+        case MeshLamp():
+            return lamp.positions_m.mean(axis=0)
+        case _:
+            raise TypeError(type(lamp).__name__)
 
 
 def glass_of(

@@ -157,15 +157,16 @@ class GlassView:
             for one in (trace.refracted, trace.surface, trace.reflected, trace.sizes)
         )
         coverage = sizes[..., 0]
+        share = np.maximum(coverage, 1e-6)
         layers = Layers(
             coverage,
             refracted[..., :3] * unit,
             surface[..., :3] * unit,
             surface[..., 3],
             reflected[..., :3] * unit,
-            refracted[..., 3],
-            sizes[..., 1],
-            reflected[..., 3],
+            refracted[..., 3] / share,
+            sizes[..., 1] / share,
+            reflected[..., 3] / share,
         )
         return Layered(layers, _counted(coverage > 0, sizes[..., 2].astype(np.uint8)))
 

@@ -79,6 +79,7 @@ class Prepared:
     sources : names of the known lamps of E0, which `lamps` has with positive and negative light.
     probes : light that virtual objects stand in instead of E0, or None.
     glass : transparent bodies and what the eyes are focused on, or None.
+    balls : those of them in whose shadow and caustic surfaces stand.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -93,11 +94,7 @@ class Prepared:
     sources: tuple[str, ...] = ()
     probes: SceneProbes | None = None
     glass: SceneGlass | None = None
-
-    @property
-    def balls(self) -> tuple[GlassBall, ...]:
-        """Glass in whose shadow and caustic surfaces stand."""
-        return () if self.glass is None else self.glass.balls
+    balls: tuple[GlassBall, ...] = ()
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
@@ -141,6 +138,7 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
     notes = (*notes, *changed_since_bake(scene, probes, surface, ambient, lamps))
+    glass = glass_of(scene, frames, surface, ambient, lamps, probes) if frames else None
     return Prepared(
         frames=frames,
         surface=replace(surface, notes=(*surface.notes, *notes)),
@@ -156,7 +154,8 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         ignored=_ignored(scene),
         sources=tuple(table.name for table in scene.ambient.source) if scene.ambient else (),
         probes=probes,
-        glass=glass_of(scene, frames, surface, ambient, lamps, probes) if frames else None,
+        glass=glass,
+        balls=() if glass is None else glass.balls,
     )
 
 

@@ -110,7 +110,7 @@ class ReferenceEngine:
             behind,
             moment.focus,
             lamps,
-            lambda *at: own.standing_lux + self._lit(*at, moment),
+            lambda points, normals: own.standing_lux + self._lit(points, normals, moment),
         )
         beside = cd_m2
         if own.model.defocus_frame and moment.focus is not None:
@@ -130,8 +130,9 @@ class ReferenceEngine:
                 row, moment.lamps, self._rays, bias_m=bias_m, balls=self.prepared.balls
             )[0]
         probes = self.prepared.probes
-        for lamp in moment.lamps if probes is not None else ():
-            if lamp.name in probes.captured:
+        captured = frozenset[str]() if probes is None else probes.captured
+        for lamp in moment.lamps:
+            if lamp.name in captured:
                 lux -= direct.illuminance(lamp, points, normals)
         return lux
 

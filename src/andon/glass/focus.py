@@ -128,7 +128,7 @@ def _direction_to(
     solids: tuple[Solid, ...], eye: Float, start: Float, point: Float
 ) -> Float | None:
     """The direction (3,) in which `eye` sees `point` (3,), by Newton's method from `start`."""
-    direction = start
+    direction: Float = start
     for _ in range(STEPS):
         right, down = perpendicular(direction)
         seen = trace(solids, eye[None], direction[None], frame=(right[None], down[None]))
@@ -140,9 +140,9 @@ def _direction_to(
         if np.linalg.norm(missed) < CLOSE_M:
             return direction
         moves = seen.pencil[0, 2:, 0] + along * seen.pencil[0, 2:, 1]  # (2, 3) per radian
-        step = np.linalg.lstsq(moves.T, missed, rcond=None)[0]
+        step: Float = np.asarray(np.linalg.lstsq(moves.T, missed, rcond=None)[0], np.float64)
         direction = direction + step[0] * right + step[1] * down
-        direction = direction / np.linalg.norm(direction)
+        direction = direction / float(np.linalg.norm(direction))
     return None
 
 

@@ -70,10 +70,10 @@ fn sight(pixel: vec2f) -> Sight {
   let flags = select(0u, IS_LOST, path.status == LOST) | through.flags | (away.flags & IS_CUT);
   let near = blur_px(vec4f(1.0, 0.0, 0.0, 1.0) / path.distance, path.distance, pixel_radians);
   return Layers(
-    vec4f(through.light * at.coverage, through.blur_px),
+    vec4f(through.light, through.blur_px) * at.coverage,
     stuck * at.coverage,
-    vec4f(away.light * at.coverage, away.blur_px),
-    vec4f(at.coverage, near, f32(flags), path.distance),
+    vec4f(away.light, away.blur_px) * at.coverage,
+    vec4f(at.coverage, near * at.coverage, f32(flags), path.distance),
   );
 }
 

@@ -17,6 +17,9 @@ Float = NDArray[np.float64]
 # no longer whether they meet the ball.
 WITHIN = 0.99999
 
+# Less coverage is no glass: light times coverage has no digits left in a half float.
+LEAST = 1 / 32
+
 
 def silhouette(
     solids: Sequence[Solid], eye: Float, rays: Float, pixel_radians: Float, /
@@ -36,6 +39,7 @@ def silhouette(
     off = np.linalg.norm(aside, axis=-1)
     outline = np.arcsin(min(radius / float(np.linalg.norm(middle)), 1.0))
     coverage = np.clip((outline - np.arctan2(off, along)) / pixel_radians + 0.5, 0, 1)
+    coverage[coverage < LEAST] = 0
     passes = off > WITHIN * radius
     nearest = middle + aside[passes] * (WITHIN * radius / off[passes, None])
     traced = rays.copy()

@@ -11,6 +11,9 @@ struct Edge {
 // no longer whether they meet the ball.
 const WITHIN: f32 = 0.99999;
 
+// Less is no glass: light times coverage has no digits left in a half float, and is divided again.
+const LEAST: f32 = 0.03125;
+
 fn silhouette(ray: Ray, pixel_radians: f32) -> Edge {
   let to = solids[0].centre - ray.origin;
   let radius = solids[0].size.x;
@@ -25,5 +28,5 @@ fn silhouette(ray: Ray, pixel_radians: f32) -> Edge {
   // The nearest ray that meets the ball: towards where this one passes, drawn in.
   let drawn = to + aside * min(WITHIN * radius / max(off, 1e-30), 1.0);
   let nearest = select(normalize(drawn), ray.direction, off <= WITHIN * radius);
-  return Edge(Ray(ray.origin, nearest), coverage);
+  return Edge(Ray(ray.origin, nearest), select(0.0, coverage, coverage >= LEAST));
 }

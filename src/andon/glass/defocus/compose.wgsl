@@ -52,7 +52,7 @@ fn seen(
 ) -> vec3f {
   let own = textureLoad(source, place, 0);
   let sharp = own.xyz / max(cover, 1e-6);
-  let d = diameter(own.w);
+  let d = diameter(own.w / max(cover, 1e-6));
   let share = select(coarser(d, FIRST), 1.0, cover == 0.0);
   if (!blurs) {
     return select(sharp, enlarged.xyz, cover == 0.0);
@@ -75,7 +75,7 @@ fn seen(
     let enlarged = coarse(coarse_rim, pixel.xy).xy;
     var share = 1.0;
     if (NEARS.y) {
-      let d = diameter(select(own.y, enlarged.y, own.x == 0.0));
+      let d = diameter(select(own.y / max(own.x, 1e-6), enlarged.y, own.x == 0.0));
       share = coarser(d, FIRST);
       let size = size_of(table, min(d, FIRST));
       let rows = near_rows(d, share, size);

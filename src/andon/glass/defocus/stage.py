@@ -50,10 +50,10 @@ class DefocusStage:
     """Blurs the layers of the glass and lays them over `target`; all rgba16float of one size.
 
     =============  =====================================================================
-    `refracted`    rgb times coverage; a: diameter of the blur in px
+    `refracted`    rgb, and a: diameter of the blur in px; all times coverage
     `surface`      rgb times α and coverage; a: α·coverage
-    `reflected`    rgb times coverage; a: diameter in px
-    `sizes`        r: coverage, 0 or 1 (a share is taken as a weight); g: diameter in px
+    `reflected`    rgb, and a: diameter in px; all times coverage
+    `sizes`        r: coverage; g: diameter in px, times coverage
     `target`       the frame; its rgb is composed in place, its alpha stays
     =============  =====================================================================
 

@@ -80,8 +80,11 @@ class Floor:
 
 def ball_at(height_m: float, /) -> GlassBall:
     """The ball of these rows over the origin."""
-    absorption = (ABSORPTION_PER_M,) * 3
-    return GlassBall(np.array([0.0, height_m, 0.0]), RADIUS_M, (INDEX,) * 3, absorption)
+    index, absorption = (
+        (INDEX, INDEX, INDEX),
+        (ABSORPTION_PER_M, ABSORPTION_PER_M, ABSORPTION_PER_M),
+    )
+    return GlassBall(np.array([0.0, height_m, 0.0]), RADIUS_M, index, absorption)
 
 
 def floor_under(ball: GlassBall, lamp: PointLamp, engine: EngineName, /) -> Floor:
@@ -105,8 +108,8 @@ def floor_under(ball: GlassBall, lamp: PointLamp, engine: EngineName, /) -> Floo
         lamp.position_m, *solid, ball.index[1], ball.absorption_per_m[1], photons=PHOTONS
     )
     pixels = np.asarray(frame.illuminance.lux, np.float64)[..., 1]
-    step = CELL_PX * (place[1, 1] - place[0, 0])[[0, 2]]
-    first = place[:CELL_PX, :CELL_PX].mean(axis=(0, 1))[[0, 2]]
+    step: Float = CELL_PX * (place[1, 1] - place[0, 0])[[0, 2]]
+    first: Float = place[:CELL_PX, :CELL_PX].reshape(-1, 3).mean(axis=0)[[0, 2]]
     bent = photons.illuminance_map(landed, first, step, (CELLS, CELLS))
     return Floor(
         ours=_in_cells(pixels),

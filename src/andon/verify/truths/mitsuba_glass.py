@@ -240,7 +240,7 @@ def _flat(vectors: Float) -> NDArray[np.float32]:
 
 
 def sensor_of(view: View, /, **lens: float) -> Any:
-    """A pinhole `view` with its principal point in the middle, as Mitsuba's sensor.
+    """A pinhole `view` as Mitsuba's sensor; its principal point is rounded to half a pixel.
 
     `lens`: ``aperture_radius`` and ``focus_distance`` (along the axis) in metres make it a
     ``thinlens``. Mitsuba's camera looks along +z, too, with x to the left and y up.
@@ -249,22 +249,36 @@ def sensor_of(view: View, /, **lens: float) -> Any:
     if view.projection != "pinhole" or view.fx != view.fy:
         raise InputError("must be a pinhole with square pixels", field="view")
     pose = view.world_from_camera @ np.diag([-1.0, -1.0, 1.0, 1.0])
+    # Its principal point is in the middle of the film, of which the view is a part.
+    width, left = _film(view.width, view.cx)
+    height, top = _film(view.height, view.cy)
     return mi.load_dict(
         {
             "type": "thinlens" if lens else "perspective",
             **lens,
             "fov_axis": "x",
-            "fov": float(np.degrees(2 * np.arctan(view.width / 2 / view.fx))),
+            "fov": float(np.degrees(2 * np.arctan(width / 2 / view.fx))),
             "near_clip": 1e-4,
             "to_world": mi.ScalarTransform4f(pose),
             "film": {
                 "type": "hdrfilm",
-                "width": view.width,
-                "height": view.height,
+                "width": width,
+                "height": height,
+                "crop_offset_x": left,
+                "crop_offset_y": top,
+                "crop_width": view.width,
+                "crop_height": view.height,
                 "rfilter": {"type": "box"},
             },
         }
     )
+
+
+def _film(size: int, centre: float) -> tuple[int, int]:
+    """Pixels of the smallest film around `centre` that holds 0…size − 1, and where they begin."""
+    twice = round(2 * centre) + 1
+    whole = max(twice, 2 * size - twice)
+    return whole, (whole - twice) // 2
 
 
 def sensor_ray(sensor: Any, film: tuple[float, float], lens: tuple[float, float], /) -> Any:

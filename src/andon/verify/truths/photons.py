@@ -103,9 +103,9 @@ def is_open(lamp_m: Float, centre_m: Float, radius_m: float, place: Float, /) ->
 def _in_cone(axis: Float, cosine: Float, turn: Float) -> Float:
     """Unit vectors at `cosine` from `axis` (3,), `turn` in [0, 1) around it."""
     helper = np.eye(3)[np.argmin(np.abs(axis))]
-    right = np.cross(axis, helper)
+    right = np.asarray(np.cross(axis, helper), np.float64)
     right /= np.linalg.norm(right)
-    up = np.cross(right, axis)
+    up = np.asarray(np.cross(right, axis), np.float64)
     sine, angle = np.sqrt(np.maximum(1 - cosine**2, 0)), 2 * np.pi * turn
     across = np.cos(angle)[:, None] * right + np.sin(angle)[:, None] * up
     return cosine[:, None] * axis + sine[:, None] * across

@@ -75,8 +75,8 @@ def test_the_recording_looks_at_the_label_the_board_and_the_label():
 def test_the_files_are_what_the_tool_makes():
     sys.path.insert(0, str(ROOT / "tools"))
     try:
-        from glass.label import label
-        from glass.pattern import pattern
+        from glass_ball.label import label
+        from glass_ball.pattern import pattern
     finally:
         sys.path.pop(0)
     made = label(2048)

@@ -17,9 +17,9 @@ from typing import Any
 
 import cv2
 import numpy as np
-from glass.gaze import gaze_rows
-from glass.label import label
-from glass.pattern import pattern
+from glass_ball.gaze import gaze_rows
+from glass_ball.label import label
+from glass_ball.pattern import pattern
 from numpy.typing import NDArray
 from PIL import Image
 

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from andon.verify import traced_frame
 from andon.verify.glass_rays import seen_through
 from andon.verify.glass_setting import BACKDROP, BODIES, EYE_M, body, drinking_glass, goblet
 from andon.verify.registry import NotShown, rows
-from andon.verify.rows import glass, glass_blur
+from andon.verify.rows import glass, glass_blur, glass_frame
 from andon.verify.run import chosen, measured
 from requirements import missing, required
 
@@ -104,3 +105,14 @@ def test_every_row_holds(entry):
 
 def test_every_body_is_named():
     assert set(glass.TRUTHS) == set(BODIES)
+
+
+def test_whole_pictures_agree_with_the_path_tracer(monkeypatch):
+    """The reference's own: what is mirrored inside the ball is the difference, some %."""
+    required("mitsuba")
+    monkeypatch.setattr(traced_frame, "WIDTH", 320)
+    monkeypatch.setattr(traced_frame, "HEIGHT", 180)
+    monkeypatch.setattr(traced_frame, "FOCAL_PX", traced_frame.FOCAL_PX / 4)
+    monkeypatch.setattr(traced_frame, "SMALLER", 4)
+    off = glass_frame.off_traced("reference", 64)
+    assert -6 < off < 0

@@ -25,7 +25,7 @@ class Duel:
     peer_repeats : at most so many repetitions of a slow peer.
     peer_less : what the peer does besides what is timed; its time is taken off.
     ours_less : what ours does besides what is timed; its time is taken off.
-    peer_parts : a repetition of the peer does this many of what ours does once.
+    peer_parts : a repetition of the peer does so many times what ours does once; may be < 1.
     """
 
     ours: Callable[[], object]
@@ -36,7 +36,7 @@ class Duel:
     close: Callable[[], object] = lambda: None
     peer_repeats: int = 5
     peer_less: Callable[[], object] | None = None
-    peer_parts: int = 1
+    peer_parts: float = 1
     ours_less: Callable[[], object] | None = None
 
 
@@ -79,3 +79,6 @@ def rows() -> tuple[BenchRow, ...]:
     from andon.bench import areas, glass, glow, probe_light, probes, relight
 
     return relight.ROWS + areas.ROWS + glow.ROWS + glass.ROWS + probes.ROWS + probe_light.ROWS
+    from andon.bench import areas, glass_frame, glow, probe_light, probes, relight
+
+    return relight.ROWS + areas.ROWS + glow.ROWS + probes.ROWS + probe_light.ROWS + glass_frame.ROWS

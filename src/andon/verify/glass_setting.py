@@ -19,11 +19,15 @@ from andon.verify.solids import lathe
 
 __all__ = [
     "BACKDROP",
+    "BETWEEN_EYES_M",
     "BODIES",
     "EYE_M",
     "FOCAL_PX",
+    "HEIGHT",
     "PUPIL_M",
     "PX_M",
+    "RADIUS_M",
+    "WIDTH",
     "body",
     "drinking_glass",
     "eye_views",

@@ -76,9 +76,7 @@ class BenchRow:
 
 def rows() -> tuple[BenchRow, ...]:
     """All rows, stage by stage."""
-    from andon.bench import areas, glass, glow, probe_light, probes, relight
+    from andon.bench import areas, glass, glass_frame, glow, probe_light, probes, relight
 
-    return relight.ROWS + areas.ROWS + glow.ROWS + glass.ROWS + probes.ROWS + probe_light.ROWS
-    from andon.bench import areas, glass_frame, glow, probe_light, probes, relight
-
-    return relight.ROWS + areas.ROWS + glow.ROWS + probes.ROWS + probe_light.ROWS + glass_frame.ROWS
+    light = relight.ROWS + areas.ROWS + glow.ROWS
+    return light + glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS

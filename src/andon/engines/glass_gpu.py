@@ -63,7 +63,6 @@ class GlassBuffers:
         """Lamps of a moment, as the bodies mirror them."""
         self.solids.write_highlights(self.glass.highlights(lamps))
 
-
     def blur(self, encoder: Any, blur_m: float) -> None:
         """Records the paper's blur of the backdrops' pictures, where it has changed."""
         if blur_m == self._blur_m:

@@ -19,6 +19,7 @@ from andon.glass import reference as glass
 from andon.glass.backdrops.model import SceneOfView
 from andon.glass.backdrops.paper import preblurred, with_blurred_pictures
 from andon.glass.defocus import reference as defocus
+from andon.glass.defocus.frame import frame_blurred
 from andon.glass.layers import Layered
 from andon.glass.model import GlassModel
 from andon.glass.screen import pixels_per_radian
@@ -123,7 +124,7 @@ class ReferenceEngine:
         beside = cd_m2
         if own.model.defocus_frame and moment.focus is not None:
             sizes = glass.frame_blur_px(own.model, behind, moment.focus)
-            beside = defocus.frame_blurred(cd_m2, sizes)
+            beside = frame_blurred(cd_m2, sizes, 1 / seen.distance_m)
         layers = defocus.blurred(self._layered.layers, own.model.blur)
         return Luminance(layers.over(beside), self.prepared.photometry)
 

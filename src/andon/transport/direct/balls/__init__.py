@@ -39,6 +39,7 @@ photons                         4                seconds        noise
     metre. The fourth channel leads to where the light of a cell goes in the mean, and so to its
     impact parameter b and to where it comes from (asin(b/ρ_lamp) off the axis): the cosine at the
     receiver, and the intensity of a spot or luminaire, are those of the refracted ray.
+    Seen closer than that (pixels below 1/200 of the radius) the caustic's rim has steps of a cell.
 Not served
     Lamps with an area, and `visible_radius_m`: all lamps here are points (or far away). What the
     ball *reflects* (4 % and the second rainbow), and light that lamps send through the ball onto

@@ -85,7 +85,7 @@ fn looked_up(layer: i32, at: BallPlace) -> vec4f {
 fn refracted(lamp: i32, pair: i32, pairs: vec2i, at: BallPlace, line: Straight) -> vec3f {
   let ball = balls[pair];
   let found = looked_up(pair, at);
-  let tilt = found.w / max(found.y, LEAST_LIGHT / LIGHT_SCALE);
+  let tilt = found.w / max(found.x + found.y + found.z, LEAST_LIGHT / LIGHT_SCALE);
   let slope = clamp(tilt * at.vergence, -STEEPEST, STEEPEST);
   let cosine = inverseSqrt(1.0 + slope * slope);
   let across = (at.along * at.outwards - at.off * ball.axis) * at.vergence;

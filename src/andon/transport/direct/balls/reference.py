@@ -179,4 +179,4 @@ def _looked_up(table: BallTable, place: _Place) -> tuple[Float, Float]:
         second = values[upper + 1, left] * (1 - right) + values[upper + 1, left + 1] * right
         found.append(first * (1 - lower) + second * lower)
     light, lean = found
-    return light, lean[:, 0] / np.maximum(light[:, 1], LEAST_LIGHT)
+    return light, lean[:, 0] / np.maximum(light.sum(axis=1), LEAST_LIGHT)

@@ -67,6 +67,17 @@ class SceneGaze:
             return self._at(dioptres, state)
         return self._on(self._layer(time_seconds, dioptres), state)
 
+    @property
+    def pointer(self) -> MouseGaze | None:
+        """What takes a pointer; None where something else says where the eyes look."""
+        return self.source if isinstance(self.source, MouseGaze) else None
+
+    def close(self) -> None:
+        """Ends a thread that listens; after it there is no gaze."""
+        if isinstance(self.source, LslGaze):
+            self.source.close()
+            self.source = None
+
     def _on(self, layer: str, state: GazeState = "seen") -> Focus:
         return focus_on(layer, self.vergences, self.blur, self.limit_dioptres, state)
 

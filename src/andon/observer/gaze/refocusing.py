@@ -1,8 +1,8 @@
 """How the eyes' focus follows what they look at: at a rate, not at once.
 
 After a reaction time that the measured gaze already has in it, accommodation nears its new state
-roughly exponentially and is there after 0.56 to 0.64 s (Campbell & Westheimer 1960): a time constant
-of a quarter of a second.
+roughly exponentially and is there after 0.56 to 0.64 s (Campbell & Westheimer 1960): a time
+constant of a quarter of a second.
 """
 
 from __future__ import annotations

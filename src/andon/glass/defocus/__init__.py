@@ -16,21 +16,21 @@ Beyond the rim
     a pyramid of means (`reference.extended`); a sharp image behind a blurred rim needs it, too,
     where an average normalised by coverage would be nought by nought.
 
-===============================  =====================  =========================================
+===============================  =====================  ==========================================
 way to draw three layers         20 px       60 px      what is wrong with it
-===============================  =====================  =========================================
+===============================  =====================  ==========================================
 every pixel of every disc        0.7 s       6.6 s      nothing
-**pyramid, discs of 3 to 12      25 ms       25 ms      0.3/255 in the mean on a photograph; the
-texels, sharpened**                                     disc of a lone point is softer at its rim
-the same, not sharpened          23 ms       23 ms      twice that error; small discs are bells
+**pyramid, discs of 3 to 12      45 ms       45 ms      0.25 to 0.6/255 in the mean on a photograph;
+texels, sharpened**                                     a lone point's disc is softer at its rim
+the same, not sharpened          not timed   not timed  about twice that error; discs are bells
 running sums along rows          0.1 s       0.3 s      float32; ends between texels cost double
 Fourier transform                                       one diameter for the whole picture
 polygons in two or three passes                         one diameter, or corners
-===============================  =====================  =========================================
+===============================  =====================  ==========================================
 
-Times are of a ball of 670 px on two cores of software Vulkan: of the pyramid measured, its passes
-summed on a quiet machine, where the caller says which discs there are not; of the others, taps at
-the 450 million a second that the pyramid's discs were measured at.
+Times are of a ball of 670 px on two cores of software Vulkan. The pyramid's is measured by the bench
+rows (one eye, wall clock, on a machine with other work; the caller says which discs there are not);
+those of the first and fourth row are computed from their taps, at 450 million a second.
 
 Reducing (weights 1 3 3 1, by which a point stays exactly where it is) and enlarging (3 1) each add
 a second moment of ¾ of a texel² of the finer level. A five-point sharpening of each level's discs

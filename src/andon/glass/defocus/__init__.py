@@ -28,9 +28,9 @@ Fourier transform                                       one diameter for the who
 polygons in two or three passes                         one diameter, or corners
 ===============================  =====================  ==========================================
 
-Times are of a ball of 670 px on two cores of software Vulkan. The pyramid's is measured by the bench
-rows (one eye, wall clock, on a machine with other work; the caller says which discs there are not);
-those of the first and fourth row are computed from their taps, at 450 million a second.
+Times are of a ball of 670 px on two cores of software Vulkan. The pyramid's is measured by the
+bench rows (one eye, wall clock, on a machine with other work; the caller says which discs there are
+not); those of the first and fourth row are computed from their taps, at 450 million a second.
 
 Reducing (weights 1 3 3 1, by which a point stays exactly where it is) and enlarging (3 1) each add
 a second moment of ¾ of a texel² of the finer level. A five-point sharpening of each level's discs

@@ -89,7 +89,9 @@ class DefocusStage:
         self._levels = {0: _Level(given, given, {}, {})}
         for level in range(1, DEEPEST + 1):
             self._levels[level] = self._make_level(level)
-        self._passes: dict[tuple[str, str, Any], FullscreenPass] = {}
+        self._passes: dict[tuple[str, str, str], FullscreenPass] = {}
+        # By the textures they hold, which live as long as the stage.
+        self._groups: dict[tuple[int, ...], BindGroup] = {}
 
     def encode(
         self,
@@ -252,12 +254,15 @@ class DefocusStage:
 
     def _group(self, *textures: Texture, table: bool) -> BindGroup:
         """The sampler, the table, and textures that are read between pixels, in order."""
-        resources: dict[int, tuple[str, Any]] = {0: ("linear sampler", self._sampler)}
-        if table:
-            resources[1] = ("float", self._table.view)
-        for texture in textures:
-            resources[len(resources)] = ("smooth", texture.view)
-        return bind_group(self.gpu, resources, "defocus")
+        key = table, *map(id, textures)
+        if key not in self._groups:
+            resources: dict[int, tuple[str, Any]] = {0: ("linear sampler", self._sampler)}
+            if table:
+                resources[1] = ("float", self._table.view)
+            for texture in textures:
+                resources[len(resources)] = ("smooth", texture.view)
+            self._groups[key] = bind_group(self.gpu, resources, "defocus")
+        return self._groups[key]
 
     def _pyramid_group(self, own: dict[str, Texture], beyond: dict[str, Texture]) -> BindGroup:
         own_textures = (own[name] for name in (*LAYERS, "sizes"))

@@ -8,7 +8,7 @@ from andon.glass.defocus.reference import blurred
 from andon.glass.defocus.stage import DefocusStage
 from andon.gpu.textures import make_texture
 from comparison import assert_agree
-from glass.defocus_pictures import disc_of_glass, natural, sheet, spread
+from defocus.pictures import disc_of_glass, natural, sheet, spread
 
 HEIGHT, WIDTH = 190, 230
 BALL = disc_of_glass(HEIGHT, WIDTH, 70)
@@ -37,7 +37,7 @@ def textures(gpu, seen, behind):
     none = np.zeros(seen.coverage.shape)
     pictures = {
         "refracted": [seen.refracted, seen.refracted_px],
-        "surface": [seen.surface, seen.surface_alpha * seen.coverage],
+        "surface": [seen.surface, seen.surface_alpha],
         "reflected": [seen.reflected, seen.reflected_px],
         "sizes": [seen.coverage, seen.surface_px, none, none],
         "target": [behind, none + 0.25],

@@ -89,8 +89,7 @@ class DefocusStage:
         self._levels = {0: _Level(given, given, {}, {})}
         for level in range(1, DEEPEST + 1):
             self._levels[level] = self._make_level(level)
-        self._passes: dict[tuple[str, str, str], FullscreenPass] = {}
-        # By the textures they hold, which live as long as the stage.
+        self._passes: dict[tuple[str, str, Any], FullscreenPass] = {}
         self._groups: dict[tuple[int, ...], BindGroup] = {}
 
     def encode(
@@ -254,7 +253,7 @@ class DefocusStage:
 
     def _group(self, *textures: Texture, table: bool) -> BindGroup:
         """The sampler, the table, and textures that are read between pixels, in order."""
-        key = table, *map(id, textures)
+        key = (int(table), *(id(texture) for texture in textures))
         if key not in self._groups:
             resources: dict[int, tuple[str, Any]] = {0: ("linear sampler", self._sampler)}
             if table:
@@ -283,4 +282,5 @@ class DefocusStage:
             level.answers["rim"] if far[1] else level.filled["sizes"],
         )
         sources = (self._sources[name] for name in (*LAYERS, "sizes"))
-        return self._group(*sources, *coarser, table=True)
+        whole = self._levels[self._plan.whole_level].means["sizes"]
+        return self._group(*sources, *coarser, whole, table=True)

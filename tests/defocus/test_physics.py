@@ -9,7 +9,7 @@ from andon.errors import InputError
 from andon.glass.defocus.kernels import Kernel
 from andon.glass.defocus.reference import blurred, extended, gathered
 from comparison import assert_agree
-from glass.defocus_pictures import disc_of_glass, natural, sheet, spread
+from defocus.pictures import disc_of_glass, natural, sheet, spread
 
 SIZE = 141
 MIDDLE = SIZE // 2

@@ -8,7 +8,7 @@ from andon.glass.defocus.reference import blurred
 from andon.glass.defocus.stage import DefocusStage
 from andon.gpu.textures import make_texture
 from comparison import assert_agree
-from glass.defocus_pictures import disc_of_glass, natural, sheet, spread
+from defocus.pictures import disc_of_glass, natural, sheet, spread
 
 HEIGHT, WIDTH = 190, 230
 BALL = disc_of_glass(HEIGHT, WIDTH, 70)

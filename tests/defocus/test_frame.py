@@ -8,7 +8,7 @@ from andon.glass.defocus.frame import frame_blurred
 from andon.glass.defocus.kernels import Kernel
 from andon.glass.defocus.reference import gathered
 from comparison import assert_agree
-from glass.defocus_pictures import natural
+from defocus.pictures import natural
 
 HEIGHT, WIDTH = 40, 60
 PICTURE = natural(HEIGHT, WIDTH)

@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 
 from andon.display.model import Seen
 from andon.errors import InputError, MachineError, nearest_name
+from andon.glass.layers import Layered
+from andon.glass.report import GlassReport
 from andon.quantities import (
     CameraFrame,
     DisplayImage,
@@ -35,8 +37,6 @@ from andon.spaces import View
 
 if TYPE_CHECKING:
     from andon.engines.prepared import Prepared
-    from andon.glass.layers import Layered
-    from andon.glass.report import GlassReport
     from andon.lamps import Lamp
 
 __all__ = ["ENGINES", "Frame", "Renderer", "Report", "relight", "render"]

@@ -4,7 +4,7 @@ import numpy as np
 
 from andon.glass.plan import variants_of
 from andon.glass.records import STRUCTS
-from andon.glass.trace_stage import SolidBuffers
+from andon.glass.stage import SolidBuffers
 from direct.shader_functions import Caller
 
 __all__ = ["PATHS", "call", "of_solids"]

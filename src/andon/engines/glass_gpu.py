@@ -20,7 +20,7 @@ from andon.glass.defocus.kernels import MAX_BLUR_PX
 from andon.glass.defocus.stage import DefocusStage
 from andon.glass.layers import Counts, Layered, Layers
 from andon.glass.screen import pixels_per_radian
-from andon.glass.trace_stage import SolidBuffers, TraceStage
+from andon.glass.stage import SolidBuffers, TraceStage
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.passes import FullscreenPass

@@ -135,7 +135,7 @@ def _on_gpu(
 ) -> tuple[Float, Float, NDArray[np.bool_], NDArray[np.bool_], Float]:
     from andon.glass.plan import variants_of
     from andon.glass.records import STRUCTS
-    from andon.glass.trace_stage import SolidBuffers
+    from andon.glass.stage import SolidBuffers
     from andon.gpu.device import open_gpu
 
     buffers = SolidBuffers(open_gpu(), solids)

@@ -2,11 +2,23 @@
 
 //!import andon/glass/defocus/kernel.wgsl
 
-// Diameters, of equal second moment where the kind is not a disc; at most LARGEST_PX. The paper's
-// σ² = K/2 is less where its window of ±K/2 cuts it: fitted within 0.15 px² from K = 2 px on.
+// Diameters, of equal second moment where the kind is not a disc; at most LARGEST_PX.
 fn diameter(blur_px: f32) -> f32 {
   let d = clamp(blur_px, 0.0, LARGEST_PX);
-  return select(d, sqrt(8.0 * d * (1.0 - exp(-d / 3.6))) * f32(d >= 1.0), IS_PAPER);
+  if (IS_PAPER) {
+    return 4.0 * sqrt(papers_variance(d));
+  }
+  return d;
+}
+
+// Second moment in px² of the paper's weights exp(−i²/K): less than its σ² = K/2, since its window
+// of ±K/2 cuts them. It grows in steps, from K = 2 px on.
+fn papers_variance(k: f32) -> f32 {
+  var sum = vec2f(1.0, 0.0);
+  for (var i = 1.0; 2.0 * i <= k; i += 1.0) {
+    sum += 2.0 * exp(-i * i / k) * vec2f(1.0, i * i);
+  }
+  return sum.y / sum.x;
 }
 
 // Radius or σ in texels of a diameter in texels, from the table.

@@ -8,7 +8,7 @@ from andon.glass import paths, pencils
 from andon.glass.backdrops.buffers import BackdropBuffers
 from andon.glass.model import Backdrop, Ball, Highlight, LensShape, Slab, Solid, Sticker
 from andon.glass.screen import outline_of, rectangle_of
-from andon.glass.trace_stage import SolidBuffers, TraceStage
+from andon.glass.stage import SolidBuffers, TraceStage
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
 from andon.quantities import Surface
 from andon.spaces import View, look_at

@@ -63,8 +63,9 @@ class SceneGaze:
         if self.source is None:
             return self._on("surface", "fallback")
         dioptres, state = self.source.at(time_seconds)
-        if table.chooses == "distance" and dioptres is not None:
-            return self._at(dioptres, state)
+        if table.chooses == "distance":
+            known = dioptres is not None
+            return self._at(dioptres, state) if known else self._on("surface", "fallback")
         layer = "surface" if dioptres is None else self._layer(time_seconds, dioptres)
         wanted = self._on(layer, state)
         return replace(wanted, dioptres=self._followed(time_seconds, wanted.dioptres))
@@ -113,10 +114,15 @@ class SceneGaze:
     def _recorded_focus(self) -> Refocusing:
         """Of the layers of the recording, with the surface where there is no gaze."""
         assert isinstance(self.source, GazeTrack)
-        times = self.source.series.times_seconds.tolist()
-        layers = zip(times, self._recorded_layers, strict=True)
-        wanted = ((time, self._on(layer).dioptres) for time, layer in layers)
-        return Refocusing(self.table.response_seconds, wanted)
+        series, hold = self.source.series, self.table.hold_seconds
+        layers = zip(series.times_seconds.tolist(), self._recorded_layers, strict=True)
+        wanted = [(time, self._on(layer).dioptres) for time, layer in layers]
+        # Where no good sample comes for longer than one is held, the surface is looked at.
+        good = series.times_seconds[series.good]
+        ends = good[np.diff(good, append=np.inf) > hold] + hold
+        surface = self._on("surface").dioptres
+        wanted += [(time, surface) for time in ends.tolist()]
+        return Refocusing(self.table.response_seconds, sorted(wanted, key=lambda one: one[0]))
 
     @cached_property
     def _recorded_layers(self) -> tuple[str, ...]:

@@ -52,6 +52,8 @@ Float = NDArray[np.float64]
 
 # Pupil of relative scenes, which do not say how bright anything is: a lit room in the evening.
 PUPIL_MM = 4.0
+# Of the picture's white: what scenes without a photograph are taken to have in the mean.
+GREY_WORLD = 0.18
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +169,7 @@ class SceneGlass:
             return beside if np.isfinite(beside) else None
         solid, steps = self.model.solids[int(seen.solid[0])], np.zeros((1, 2, 2))
         sticks = np.isfinite(seen.uv).all() and sticker_at(solid, seen.uv, steps)[0, 3] > 0
-        return 1 / self.vergences.surface if sticks else self.backdrop_m
+        return float(seen.distance_m[0]) if sticks else self.backdrop_m
 
     def focus(self, time_seconds: float, /) -> Focus | None:
         """What is in focus at a time; None: everything."""
@@ -244,7 +246,7 @@ def glass_of(
     model = GlassModel(
         solids,
         blur="off" if gaze is None else gaze.blur,
-        pupil_m=_pupil_mm(scene, frames) / 1000,
+        pupil_m=_pupil_mm(scene, frames, np.asarray(ambient.dimming)) / 1000,
         defocus_frame=gaze is not None and gaze.defocus == "frame",
         environment=_environments(solids, left, lamps, probes),
     )
@@ -259,11 +261,16 @@ def glass_of(
     return SceneGlass(model, looking, vergences, both, distances, surface, ambient, standing)
 
 
-def _pupil_mm(scene: Scene, frames: Mapping[str, CameraFrame]) -> float:
+def _pupil_mm(scene: Scene, frames: Mapping[str, CameraFrame], dimming: Float) -> float:
+    """As stated, or by what the eyes are adapted to: the dimmed photograph, without lamps."""
     if scene.observer.pupil_mm is None and scene.photometry == "relative":
         return PUPIL_MM
+    if not scene.has_photograph:
+        white = next(iter(frames.values())).luminance_per_unit
+        return pupil_mm(scene.observer, GREY_WORLD * white)
     means = [
-        float(photometric(frame.linear.reshape(-1, 3).mean(axis=0))) * frame.luminance_per_unit
+        float(photometric(dimming * frame.linear.reshape(-1, 3).mean(axis=0)))
+        * frame.luminance_per_unit
         for frame in frames.values()
     ]
     return pupil_mm(scene.observer, float(np.mean(means)))
@@ -299,7 +306,8 @@ def _distances(backdrop: Backdrop, eye: Float, surface: SurfaceModel) -> Distanc
             away = origins - eye
             along = np.einsum("ni,ni->n", away, directions)
             half = along**2 - np.einsum("ni,ni->n", away, away) + backdrop.distance_m**2
-            return np.where(half > 0, np.sqrt(np.maximum(half, 0)) - along, np.inf)
+            reach = np.sqrt(np.maximum(half, 0)) - along
+            return np.where((half > 0) & (reach > 0), reach, np.inf)
 
         return to_sphere
     # Thinned triangles: millimetres of backdrop are nothing to a vergence.

@@ -19,7 +19,7 @@ from andon.glass.backdrops.paper import texels_per_metre
 from andon.glass.defocus.kernels import MAX_BLUR_PX
 from andon.glass.defocus.stage import DefocusStage
 from andon.glass.layers import Counts, Layered, Layers
-from andon.glass.screen import pixels_per_radian
+from andon.glass.screen import middle_pixels_per_radian
 from andon.glass.stage import SolidBuffers, TraceStage
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
@@ -89,7 +89,7 @@ class GlassView:
         """`lit`: bindings 2 to 5 of frame.wgsl, and the light of the lamps."""
         self.gpu, self.shared, self.frame = gpu, shared, frame
         view, model = frame.view, shared.glass.model
-        self._per_radian = pixels_per_radian(view)
+        self._per_radian = middle_pixels_per_radian(view)
         self._stuck: object = None
         self._bounds = BlurBounds(model, view)
         self._levels = FrameLevels(gpu, luminance, blurs=model.blur == "paper")

@@ -22,7 +22,7 @@ from andon.glass.defocus import reference as defocus
 from andon.glass.defocus.frame import frame_blurred
 from andon.glass.layers import Layered
 from andon.glass.model import GlassModel
-from andon.glass.screen import pixels_per_radian
+from andon.glass.screen import middle_pixels_per_radian
 from andon.glow import reference as glow
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface import reference as surface
@@ -142,7 +142,7 @@ class ReferenceEngine:
         assert model is not None
         if all(solid.backdrop.kind == "texture" for solid in model.solids):
             return model, behind
-        per_m = pixels_per_radian(behind.view) / own.backdrop_m
+        per_m = middle_pixels_per_radian(behind.view) / own.backdrop_m
         return model, behind.with_luminance(preblurred(behind.luminance, per_m, blur_m))
 
     def _lit(self, points: Float, normals: Float, moment: Moment) -> Float:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from andon.glass.model import Blur, Focus, Solid
 from andon.glass.paths import Traced, trace
 from andon.glass.pencils import vergence
+from andon.observer.gaze.fixation import meeting
 from andon.spaces import perpendicular
 
 __all__ = ["Distances", "LayerVergences", "crossing_dioptres", "focus_on", "layer_vergences"]
@@ -64,6 +65,7 @@ def layer_vergences(
         far = 1e9
     matrix = vergence(seen.pencil, np.array([far]), seen.exit_direction)[0]
     low, high = np.linalg.eigvalsh((matrix + matrix.T) / 2)
+    # A ray that meets no glass has gone infinitely far.
     return LayerVergences(1 / float(seen.distance_m[0]), (float(low), float(high)), straight)
 
 
@@ -176,15 +178,9 @@ def _aim(solids: tuple[Solid, ...], eye: Float, towards: Float, point: Float) ->
 
 def _vergence_of_rays(eyes: tuple[Float, Float], directions: tuple[Float, Float]) -> float:
     """1/distance of the middle of the shortest segment between two rays; < 0 behind the eyes."""
-    between = eyes[1] - eyes[0]
-    a, b = directions
-    cosine = float(a @ b)
-    both = 1 - cosine**2
-    if both < 1e-12:
-        return 0.0
-    s = (float(between @ a) - cosine * float(between @ b)) / both
-    t = (cosine * float(between @ a) - float(between @ b)) / both
-    crossing = (eyes[0] + s * a + eyes[1] + t * b) / 2
+    crossing = meeting(np.array(eyes)[None], np.array(directions)[None]).points_m[0]
+    if np.isnan(crossing).any():
+        return 0.0  # parallel
     reach = crossing - (eyes[0] + eyes[1]) / 2
-    sign = 1.0 if reach @ (a + b) > 0 else -1.0
+    sign = 1.0 if reach @ (directions[0] + directions[1]) > 0 else -1.0
     return sign / float(np.linalg.norm(reach))

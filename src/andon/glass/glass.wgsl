@@ -40,10 +40,12 @@ struct Sight {
   coverage: f32,
 };
 
-// From the eye to the scene in metres, along the ray; a hole is far away.
+// From the eye to the scene in metres, along the ray; a hole holds its cover's depth, or 0 where it is
+// far away.
 fn scene_distance(packed: vec4u, pixel: vec2f) -> f32 {
-  let depth = bitcast<f32>(packed.x) * length(world_ray(pixel));
-  return select(NOWHERE, depth, (packed.w & VALID) != 0u);
+  let depth = bitcast<f32>(packed.x);
+  let known = (packed.w & VALID) != 0u || depth > 0.0;
+  return select(NOWHERE, depth * length(world_ray(pixel)), known);
 }
 
 fn sight(pixel: vec2f) -> Sight {
@@ -67,7 +69,9 @@ fn sight(pixel: vec2f) -> Sight {
   let through = refracted_layer(at.ray, start, at.first, path, pixel_radians);
   let away = reflected_layer(at.ray, start, path, pixel_radians);
   let stuck = stuck_on(at.ray, start, at.first, pixel_radians);
-  let flags = select(0u, IS_LOST, path.status == LOST) | through.flags | (away.flags & IS_CUT);
+  let lost = path.status == LOST;
+  let own = select(through.flags, IS_LOST | (through.flags & ~IS_MISSED), lost);
+  let flags = own | (away.flags & IS_CUT);
   let near = blur_px(vec4f(1.0, 0.0, 0.0, 1.0) / path.distance, path.distance, pixel_radians);
   return Layers(
     vec4f(through.light, through.blur_px) * at.coverage,

@@ -63,7 +63,6 @@ fn refracted_layer(ray: Ray, start: Pencil, first: Boundary, path: Path, pixel_r
     let red = found_through(ray, trace(ray, start, first, 0), pixel_radians);
     let blue = found_through(ray, trace(ray, start, first, 2), pixel_radians);
     layer.light = vec3f(red.light.r, layer.light.g, blue.light.b);
-    layer.flags |= red.flags | blue.flags;
   }
   return layer;
 }

@@ -76,11 +76,6 @@ fn vergence(s: Spread) -> vec4f {
   return vec4f(first, second) / size;
 }
 
-// Angle of one radian of the view in metres of what is seen, mean of both axes.
-fn magnification(s: Spread) -> f32 {
-  return sqrt(abs(s.f1.z * s.f2.w - s.f1.w * s.f2.z));
-}
-
 // Diameter in radians of the disc that has the second moment of the blur's ellipse A·(V − F·1).
 fn blur_radians(V: vec4f, focus_dioptres: f32, pupil_m: f32) -> f32 {
   let left = V - focus_dioptres * vec4f(1.0, 0.0, 0.0, 1.0);

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from andon.glass.model import MAX_SOLIDS, Ball, LensShape, Slab, Solid
 from andon.spaces import View, perpendicular, rotate, transform_points
 
-__all__ = ["MOST_CORNERS", "Rectangle", "outline_of", "pixels_per_radian", "rectangle_of"]
+__all__ = ["MOST_CORNERS", "Rectangle", "outline_of", "middle_pixels_per_radian", "pixels_per_radian", "rectangle_of"]
 
 Float = NDArray[np.float64]
 # x, y, width, height in pixels
@@ -28,6 +28,11 @@ MOST_CORNERS = BALL_CORNERS * MAX_SOLIDS
 def pixels_per_radian(view: View, /) -> float:
     """Of the smallest pixel: angles times this are no fewer pixels anywhere."""
     return 1 / float(np.sqrt(view.solid_angles().min()))
+
+
+def middle_pixels_per_radian(view: View, /) -> float:
+    """Of the largest pixel, which is that of the axis: the focal length in pixels."""
+    return 1 / float(np.sqrt(view.solid_angles().max()))
 
 
 def rectangle_of(solids: Sequence[Solid], view: View, /) -> Rectangle | None:

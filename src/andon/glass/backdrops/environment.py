@@ -23,8 +23,8 @@ def environment_of(ambient_lux: ArrayLike, lamps: Iterable[Lamp] = (), /) -> Flo
 
     `ambient_lux` is what is left of E0 after dimming, in lx; it stands for a luminance of E0/π in
     every direction. Of a sky of luminance E/π above the horizon bands 0 and 1 are exact (band 2 is
-    0), so its edge is lost: the light falls off with the height, a third too bright at the zenith
-    of a lone sky by band 1 (5/4 instead of 1). Other lamps are highlights, no environment.
+    0), so its edge is lost: the light falls off with the height, a quarter too bright at the zenith
+    of a lone sky (5/4 instead of 1). Other lamps are highlights, no environment.
     """
     found = np.zeros((9, 3))
     found[0] = np.asarray(ambient_lux, np.float64) / np.pi / FIRST

@@ -30,7 +30,13 @@ class Refocusing:
             self.look(time_seconds, dioptres)
 
     def look(self, time_seconds: float, dioptres: float, /) -> None:
-        """From `time_seconds` on the eyes want to focus on `dioptres`."""
+        """From `time_seconds` on the eyes want to focus on `dioptres`.
+
+        A time before the last one told is of a clock that was set anew: what was is forgotten.
+        """
+        if self._times and time_seconds < self._times[-1]:
+            self._times.clear()
+            self._changes.clear()
         if not self._changes:
             self._add(time_seconds, dioptres, dioptres)
         elif dioptres != self._changes[-1][1]:

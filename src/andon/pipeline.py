@@ -204,6 +204,29 @@ class Renderer:
         """Draws one view and returns its 8-bit codes (H, W, 3) alone, which is faster."""
         return self._engine.picture(self.draw(time_seconds, view)[-1]).rgb
 
+    def point_at(
+        self, column: float, row: float, time_seconds: float, view: str | None = None
+    ) -> None:
+        """Tells a gaze of source ``mouse`` where the pointer is, in pixels of a view.
+
+        On what sticks to the glass it looks at the surface, on clear glass through it, and beside
+        the glass at what is there. Raises `InputError` where the scene's gaze is another.
+        """
+        glass = self.prepared.glass
+        pointer = None if glass is None or glass.gaze is None else glass.gaze.pointer
+        if glass is None or pointer is None:
+            raise InputError(
+                "needs a scene with glass and a gaze of source 'mouse'", field="gaze.source"
+            )
+        frame = self.prepared.frames[self._view_name(view)]
+        pointer.point(time_seconds, glass.distance_under(frame.view, column, row))
+
+    def close(self) -> None:
+        """Lets go of what listens: a gaze over the network. Drawing goes on without it."""
+        glass = self.prepared.glass
+        if glass is not None and glass.gaze is not None:
+            glass.gaze.close()
+
     def _view_name(self, view: str | None) -> str:
         if view is None:
             return self.view_names[0]

@@ -12,6 +12,7 @@ from andon.composite.reference import lamp_luminance, object_luminance, relit_li
 from andon.engines.prepared import prepare
 from andon.errors import InputError
 from andon.files.pictures import read_picture, write_picture
+from andon.glass.layers import Layers
 from andon.glow.model import Glow
 from andon.glow.reference import add_glow
 from andon.harmonics import basis, irradiance, project_cube
@@ -295,3 +296,14 @@ def test_spherical_harmonics():
     sky = project_cube(np.full((6, 4, 4, 3), 7.0), 1)  # cd/m² from all sides
     close(sky[0], 7 * np.sqrt(4 * np.pi))
     close(irradiance(sky, Y), 7 * np.pi)
+
+
+def test_cover_of_glass():
+    one, none = np.ones((1, 1)), np.zeros((1, 1))
+    share = (1 - 0.8) * 0.5  # a texture of 80 % transmittance that covers half of the pixel
+    layers = Layers(
+        one, np.full((1, 1, 3), 100.0), np.full((1, 1, 3), share * 40.0), share * one,
+        np.full((1, 1, 3), 7.0), none, none, none,
+    )  # fmt: skip
+    seen = layers.over(np.full((1, 1, 3), 1e6))
+    np.testing.assert_allclose(seen, 0.1 * 40 + 0.9 * 100 + 7)

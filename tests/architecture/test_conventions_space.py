@@ -5,10 +5,15 @@ import pytest
 
 import andon
 from andon.engines.prepared import prepare
+from andon.engines.reading import view_of
 from andon.files.pictures import read_picture, write_exr, write_picture
 from andon.gbuffer import VIEW_RECORD, pack_view
+from andon.glass.model import Ball, Slab, Solid
+from andon.glass.paths import trace
+from andon.glass.pencils import vergence
 from andon.gpu.layout import HostStruct
 from andon.harmonics import cube_directions
+from andon.scene import scene_from_dict
 from andon.spaces import View, invert_rigid, rotate, transform_points
 from andon.surface.depth import DepthEncoding, depth_from_raw
 from andon.surface.objects import object_geometry
@@ -180,3 +185,36 @@ def test_cube_maps():
     close(directions.mean(axis=(1, 2)) * np.sqrt(1.5), [X, -X, Y, -Y, Z, -Z])
     first = np.sign(directions[:, 0, 0])  # row 0, column 0 of each face
     close(first, [[1, 1, 1], [-1, 1, -1], [-1, 1, -1], [-1, -1, 1], [-1, 1, 1], [1, 1, -1]])
+
+
+def test_eyes_apart():
+    camera = {"width": 4, "height": 4, "hfov_degrees": 60.0}
+    tables = {"rig": {"kind": "stereo", "camera": camera}, "observer": {"interpupillary_mm": 60.0}}
+    scene = scene_from_dict(tables)
+    left, right = (view_of(scene, name, None).world_from_camera for name in ("left", "right"))
+    np.testing.assert_allclose(left[:3, 3], [-0.03, 0, 0])
+    np.testing.assert_allclose(right[:3, 3], [0.03, 0, 0])
+    np.testing.assert_array_equal(left[:3, :3], right[:3, :3])
+
+
+def test_vergence():
+    ahead, eye = np.array([[0.0, 0.0, -1.0]]), np.array([[0.0, 0.0, 0.4]])
+    bare = trace((), eye, ahead)
+    np.testing.assert_allclose(
+        vergence(bare.pencil, np.array([2.0]), ahead)[0], 0.5 * np.eye(2), atol=1e-12
+    )
+    # Refracted once by a ball, light of a point 0.2 m behind its middle converges behind the eye.
+    entered = trace((Solid("ball", Ball(0.075), interfaces=1),), eye, ahead)
+    behind = vergence(entered.pencil, np.array([0.275]), ahead)[0]
+    assert np.linalg.eigvalsh(behind).max() < 0
+
+
+def test_stickers():
+    ahead = np.array([[0.0, 0.0, -1.0]])
+    points = {(0.0, 0.0): (0.5, 0.5), (0.03, 0.0): (0.56, 0.5), (0.0, 0.03): (0.5, 0.37)}
+    for (x, y), expected in points.items():
+        seen = trace((Solid("ball", Ball(0.075)),), np.array([[x, y, 0.4]]), ahead)
+        np.testing.assert_allclose(seen.uv[0], expected, atol=0.01)
+    slab = Solid("slab", Slab(np.array([0.1, 0.05, 0.01])))
+    seen = trace((slab,), np.array([[0.05, 0.025, 0.4]]), ahead)
+    np.testing.assert_allclose(seen.uv[0], [0.75, 0.25])

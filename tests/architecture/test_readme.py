@@ -33,7 +33,8 @@ def folder(tmp_path, monkeypatch):
 def test_it_shows_something():
     assert len(COMMANDS) >= 4
     assert [command.split()[1] for command in PROBE_COMMANDS] == ["place", "bake", "show", "export"]
-    assert set(FILES) == {"camera.toml", "night.toml", "probes.toml"}
+    assert set(FILES) == {"camera.toml", "night.toml", "probes.toml", "ball.toml"}
+    assert len(PYTHON) == 3
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -63,7 +64,20 @@ def test_probes(folder, capsys):
     assert names["light"].shape == (2, 9, 3)
     lux = names["andon"].harmonics.irradiance(names["light"], np.array([0.0, 1.0, 0.0]))
     assert (lux > 1000).all()
-    assert len(PYTHON) == 2
+
+
+def test_glass(folder, capsys):
+    command = re.search(r"`andon (glass ball[^`]*)`", README)[1]
+    assert _run([*shlex.split(command), "--engine", "reference"], debug=True) == 0
+    grey = read_picture(folder / "photo.png").values
+    assert not np.array_equal(read_picture(folder / "ball.png").values, grey)
+    shutil.copytree(ROOT / "examples" / "glass", folder / "examples" / "glass")
+    names = {}
+    exec(compile(PYTHON[2], "README.md", "exec"), names)
+    assert names["left"].glass.layers.refracted.shape == (720, 1280, 3)
+    told = float(re.search(r"background_mean  # ([\d.]+) D", README)[1])
+    seen = names["left"].report.glass.vergences.background_mean
+    assert seen == pytest.approx(told, abs=0.005)
 
 
 def test_links():

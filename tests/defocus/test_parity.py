@@ -37,7 +37,7 @@ def textures(gpu, seen, behind):
     none = np.zeros(seen.coverage.shape)
     pictures = {
         "refracted": [seen.refracted, seen.refracted_px],
-        "surface": [seen.surface, seen.surface_alpha * seen.coverage],
+        "surface": [seen.surface, seen.surface_alpha],
         "reflected": [seen.reflected, seen.reflected_px],
         "sizes": [seen.coverage, seen.surface_px, none, none],
         "target": [behind, none + 0.25],

@@ -164,7 +164,7 @@ def exact_and_marched(view, geometry, count=20000, **rays):
     """Distances by the march and by Embree, of rays whose hit the eye sees; and of the others."""
     surface, scene = surface_of(view, geometry)
     origins, directions = rays_from_a_ball(count, **rays)
-    marched, _ = march(surface, origins, directions)
+    marched = march(surface, origins, directions).distance_m
     hits = scene.first_hits(origins, directions)
     hit = np.isfinite(hits.distance)
     points = origins + np.where(hit, hits.distance, 0)[:, None] * directions
@@ -206,7 +206,8 @@ def test_rays_pass_behind_what_is_nearer():
     back = sheet((-4, -4, -3), (8, 0, 0), (0, 8, 0))
     surface, _ = surface_of(view, merged(aside, before, back))
     origins, directions = np.array([[-0.6, 0.0, -1.7]]), np.array([[1.0, 0.0, 0.0]])
-    distance, normals = march(surface, origins, directions)
+    met = march(surface, origins, directions)
+    distance, normals = met.distance_m, met.normal
     assert_agree(distance, [1.5], rtol=1e-6)
     assert_agree(normals, [[-1.0, 0, 0]], atol=1e-9)
 
@@ -227,7 +228,7 @@ def test_holes_are_passed():
 def test_a_surface_is_met_from_its_front_only():
     """A ray that starts behind a wall and comes towards the eye does not see the wall's back."""
     surface, _ = surface_of(VIEWS["pinhole"], SLANTED_WALL)
-    distance, _ = march(surface, np.array([[0.0, 0, -2.5]]), np.array([[0.0, 0, 1.0]]))
+    distance = march(surface, np.array([[0.0, 0, -2.5]]), np.array([[0.0, 0, 1.0]])).distance_m
     assert distance[0] == np.inf
 
 

@@ -185,6 +185,35 @@ def test_surfaces(gpu, projection):
     assert_same(actual, expected, share=0.005)
 
 
+def test_surfaces_full_of_holes(gpu):
+    """Where in a hole a ray meets what is around it, is settled to a pixel only: left out."""
+    eye = eye_of(VIEWS["pinhole"], WALL_AND_BOX)
+    torn = np.random.default_rng(4).random((18, 32)) < 0.2
+    eye.surface.valid[np.kron(torn, np.ones((10, 10), bool))] = False
+    solid = Solid("a", Ball(1.0), backdrop=Backdrop("surface"))
+    origins, directions = rays_from_a_ball(20000, centre=(0.5, 0.1, -1.6))
+    actual, expected = both(gpu, solid, eye, (origins, directions))
+    hidden = expected[3] & (expected[1] < FAR_M)
+    assert hidden.mean() > 0.2
+    there, here = (
+        eye.view.project((origins + one[1][:, None] * directions) * [1, -1, -1])
+        for one in (expected, actual)
+    )
+    both_hidden = hidden & actual[3] & (actual[1] < FAR_M)
+    assert_agree(here[both_hidden], there[both_hidden], atol=1.0, share=0.01)
+    column, row = np.clip(np.rint(np.nan_to_num(there)), 0, [319, 179]).astype(int).T
+    sound = np.where(expected[3], ~hidden, eye.surface.valid[row, column])
+    assert_same(*([one[sound] for one in each] for each in (actual, expected)), share=0.005)
+
+
+def test_rays_along_the_picture_have_light(gpu):
+    """Nearly at right angles to the eye's axis the footprint in the picture has no end."""
+    eye, solid = eye_of(VIEWS["pinhole"]), Solid("a", Ball(1.0), backdrop=Backdrop("surface"))
+    directions = np.array([[0.3, 0.9, -z] for z in np.geomspace(1e-12, 1e-3, 300)])
+    origins = np.tile([[0.0, 0.0, -0.5]], (300, 1))
+    assert_same(*both(gpu, solid, eye, (origins, directions)), share=0.005)
+
+
 def test_one_kind_for_each_body(gpu):
     eye = eye_of(VIEWS["pinhole"], WALL_AND_BOX)
     kinds = (PICTURE, Backdrop("frame", distance_m=2.0), Backdrop("surface"))

@@ -123,7 +123,11 @@ def _prepared(scene: Scene, look: str) -> Prepared:
     from andon.cli.glass import GlassOptions, overridden
     from andon.engines.prepared import prepare
 
-    return prepare(overridden(scene, GlassOptions(Path(), Path(), gaze=look)))
+    looking = overridden(scene, GlassOptions(Path(), Path(), gaze=look))
+    assert looking.gaze is not None
+    # The camera that takes the path-traced row blurs what is beside the glass, too.
+    gaze = looking.gaze.model_copy(update={"defocus": "frame"})
+    return prepare(looking.model_copy(update={"gaze": gaze}))
 
 
 def _crop(prepared: Prepared) -> dict[str, tuple[slice, slice]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -12,7 +12,7 @@ from andon.errors import InputError
 from andon.glass.focus import LayerVergences, focus_on
 from andon.glass.model import Blur, Focus
 from andon.observer.accommodation import accommodation_dioptres
-from andon.observer.gaze import GazeTrack, LayerChoice, LslGaze, MouseGaze, load_track
+from andon.observer.gaze import GazeTrack, LayerChoice, LslGaze, MouseGaze, Refocusing, load_track
 from andon.observer.model import GazeState
 from andon.scene import Scene
 from andon.scene.eye import Gaze
@@ -47,9 +47,11 @@ class SceneGaze:
     limit_dioptres: float
     source: GazeSource | None = None
     _choice: LayerChoice = field(init=False)
+    _refocusing: Refocusing = field(init=False)
 
     def __post_init__(self) -> None:
         self._choice = LayerChoice(self.table.hysteresis)
+        self._refocusing = Refocusing(self.table.response_seconds)
 
     def focus(self, time_seconds: float, /) -> Focus:
         """What is in focus at a time."""
@@ -61,11 +63,22 @@ class SceneGaze:
         if self.source is None:
             return self._on("surface", "fallback")
         dioptres, state = self.source.at(time_seconds)
-        if dioptres is None:
-            return self._on("surface", "fallback")
-        if table.chooses == "distance":
+        if table.chooses == "distance" and dioptres is not None:
             return self._at(dioptres, state)
-        return self._on(self._layer(time_seconds, dioptres), state)
+        layer = "surface" if dioptres is None else self._layer(time_seconds, dioptres)
+        wanted = self._on(layer, state)
+        return replace(wanted, dioptres=self._followed(time_seconds, wanted.dioptres))
+
+    @property
+    def pointer(self) -> MouseGaze | None:
+        """What takes a pointer; None where something else says where the eyes look."""
+        return self.source if isinstance(self.source, MouseGaze) else None
+
+    def close(self) -> None:
+        """Ends a thread that listens; after it there is no gaze."""
+        if isinstance(self.source, LslGaze):
+            self.source.close()
+            self.source = None
 
     def _on(self, layer: str, state: GazeState = "seen") -> Focus:
         return focus_on(layer, self.vergences, self.blur, self.limit_dioptres, state)
@@ -88,6 +101,22 @@ class SceneGaze:
         times = track.series.times_seconds
         index = int(np.searchsorted(times, time_seconds, side="right")) - 1
         return self._recorded_layers[max(index, 0)]
+
+    def _followed(self, time_seconds: float, wanted: float) -> float:
+        """Where the focus is on its way to what is wanted, in dioptres."""
+        if isinstance(self.source, GazeTrack):
+            return self._recorded_focus.at(time_seconds)
+        self._refocusing.look(time_seconds, wanted)
+        return self._refocusing.at(time_seconds)
+
+    @cached_property
+    def _recorded_focus(self) -> Refocusing:
+        """Of the layers of the recording, with the surface where there is no gaze."""
+        assert isinstance(self.source, GazeTrack)
+        times = self.source.series.times_seconds.tolist()
+        layers = zip(times, self._recorded_layers, strict=True)
+        wanted = ((time, self._on(layer).dioptres) for time, layer in layers)
+        return Refocusing(self.table.response_seconds, wanted)
 
     @cached_property
     def _recorded_layers(self) -> tuple[str, ...]:

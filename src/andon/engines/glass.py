@@ -15,10 +15,12 @@ from andon.engines.gaze import SceneGaze, gaze_of
 from andon.engines.probes import SceneProbes
 from andon.glass.backdrops.environment import environment_of
 from andon.glass.backdrops.paper import blur_metres
+from andon.glass.backdrops.reference import sticker_at
 from andon.glass.focus import Distances, LayerVergences, crossing_dioptres, layer_vergences
 from andon.glass.layers import Layered
 from andon.glass.load import check_eye, solids_of
 from andon.glass.model import MAX_HIGHLIGHTS, Backdrop, Ball, Focus, GlassModel, Highlight, Solid
+from andon.glass.paths import trace
 from andon.glass.report import GlassReport
 from andon.lamps import (
     AreaLamp,
@@ -37,6 +39,7 @@ from andon.observer.pupil import pupil_mm
 from andon.quantities import CameraFrame, photometric
 from andon.rays import RayScene
 from andon.scene import Scene
+from andon.spaces import View
 from andon.surface.model import SurfaceModel
 from andon.transport.direct import reference as direct
 from andon.transport.direct.balls.model import GlassBall
@@ -147,6 +150,24 @@ class SceneGlass:
         if len(self.eyes) < 2:
             return None
         return crossing_dioptres(self.model.solids, (self.eyes[0], self.eyes[1]), self.distances)
+
+    def distance_under(self, view: View, column: float, row: float, /) -> float | None:
+        """Metres to what a pointer is on: what sticks to the glass, what is seen through it where
+        it is clear, or what is beside it; None where there is nothing.
+        """
+        x, y = (
+            int(np.clip(round(v), 0, n - 1))
+            for v, n in zip((column, row), view.shape[::-1], strict=True)
+        )
+        eye, directions = view.rays_world()
+        ray = directions[y, x][None]
+        seen = trace(self.model.solids, eye[None], ray)
+        if seen.solid[0] < 0:
+            beside = float(self.distances(eye[None], ray)[0])
+            return beside if np.isfinite(beside) else None
+        solid, steps = self.model.solids[int(seen.solid[0])], np.zeros((1, 2, 2))
+        sticks = np.isfinite(seen.uv).all() and sticker_at(solid, seen.uv, steps)[0, 3] > 0
+        return 1 / self.vergences.surface if sticks else self.backdrop_m
 
     def focus(self, time_seconds: float, /) -> Focus | None:
         """What is in focus at a time; None: everything."""

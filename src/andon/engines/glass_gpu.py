@@ -11,6 +11,7 @@ from andon import gbuffer
 from andon.composite import stage as composite
 from andon.composite.records import AMBIENT_RECORD, pack_ambient
 from andon.engines.glass import SceneGlass
+from andon.engines.glass_blur import BlurBounds
 from andon.engines.moment import Moment
 from andon.glass.backdrops.buffers import BackdropBuffers
 from andon.glass.backdrops.levels import FrameLevels
@@ -18,7 +19,6 @@ from andon.glass.backdrops.paper import texels_per_metre
 from andon.glass.defocus.kernels import MAX_BLUR_PX
 from andon.glass.defocus.stage import DefocusStage
 from andon.glass.layers import Counts, Layered, Layers
-from andon.glass.model import Focus
 from andon.glass.screen import pixels_per_radian
 from andon.glass.stage import SolidBuffers, TraceStage
 from andon.gpu.bindings import bind_group
@@ -89,6 +89,9 @@ class GlassView:
         """`lit`: bindings 2 to 5 of frame.wgsl, and the light of the lamps."""
         self.gpu, self.shared, self.frame = gpu, shared, frame
         view, model = frame.view, shared.glass.model
+        self._per_radian = pixels_per_radian(view)
+        self._stuck: object = None
+        self._bounds = BlurBounds(model, view)
         self._levels = FrameLevels(gpu, luminance, blurs=model.blur == "paper")
         self.trace = TraceStage(
             gpu,
@@ -148,27 +151,22 @@ class GlassView:
         blur_m = self.shared.glass.paper_blur_m(focus)
         self.shared.blur(encoder, blur_m)
         if self.shared.sees_frame:
-            per_m = pixels_per_radian(self.frame.view) / self.shared.glass.backdrop_m
+            per_m = self._per_radian / self.shared.glass.backdrop_m
             self._levels.encode(encoder, per_m * blur_m)
-        self.trace.encode_stickers(encoder)
+        self._encode_stickers(encoder, moment)
         self.trace.encode(encoder)
         if self._light is not None:
             self._light.encode_within(encoder, [self.trace.surface.view], within)
-        self._defocus.encode(encoder, within, self._largest(focus) if blurs else (0.0, 0.0, 0.0))
+        none = (0.0, 0.0, 0.0)
+        most, least = (none, none) if focus is None or not blurs else self._bounds.of(focus)
+        self._defocus.encode(encoder, within, most, least)
 
-    def _largest(self, focus: Focus | None) -> tuple[float, float, float]:
-        """No disc of the refracted image, the surface and the mirrored one is larger, px."""
-        assert focus is not None
-        model, view = self.shared.glass.model, self.frame.view
-        per_radian = pixels_per_radian(view)
-        spans: list[float] = []
-        for solid in model.solids:
-            middle, radius = solid.ball_around
-            away = float(np.linalg.norm(middle - view.position))
-            ends = (1 / max(away - radius, 1e-3), 1 / (away + radius))
-            spans += [abs(end - focus.dioptres) for end in ends]
-        surface = max(spans) * model.pupil_m * per_radian
-        return MAX_BLUR_PX, min(surface, MAX_BLUR_PX), MAX_BLUR_PX
+    def _encode_stickers(self, encoder: Any, moment: Moment) -> None:
+        """Anew where something moves: what hides the glass, or the glass itself."""
+        moves = bool(moment.bodies) or bool(moment.movers)
+        if moves or self._stuck is not self.shared.solids.solids:
+            self.trace.encode_stickers(encoder)
+            self._stuck = self.shared.solids.solids
 
     def read(self) -> Layered:
         """The sharp layers as arrays, and their counts; waits for the device."""

@@ -54,6 +54,9 @@ LATER_KEYS = {
     "glare": ("renderer", "highlights", "halo", "needles", "adaptation"),
 }
 
+# Keys of [observer] that only glass that somebody looks at asks for.
+PUPIL_KEYS = ("pupil_mm", "pupil_model")
+
 
 def nobody(time_seconds: float, /) -> tuple[Body, ...]:
     """No luminous bodies at any time."""
@@ -213,8 +216,13 @@ def _virtual_groups(scene: Scene, surface: SurfaceModel) -> frozenset[str]:
 def _ignored(scene: Scene) -> tuple[str, ...]:
     """Tables and keys that the scene states and this version does not draw."""
     tables = [name for name in LATER_TABLES if getattr(scene, name)]
+    looks = scene.gaze is not None and bool(scene.glass)
+    tables += ["gaze"] if scene.gaze is not None and not looks else []
+    later = dict(LATER_KEYS)
+    later["observer"] += () if looks else PUPIL_KEYS
+    later["observer"] += () if looks or scene.glare is not None else ("age",)
     keys: list[str] = []
-    for table, names in LATER_KEYS.items():
+    for table, names in later.items():
         stated = getattr(scene, table)
         keys += [f"{table}.{n}" for n in names if stated and n in stated.model_fields_set]
     return (*tables, *keys)

@@ -2,8 +2,9 @@
 
 What ordinary real-time renderers do: the view ray is bent once, where it enters, and its
 *direction* alone says what is seen, in a picture of the surroundings as from the body's centre. So
-what is behind the glass lies infinitely far away: it is in the same place for both eyes, and a
-picture on a display has no depth to blur.
+what is behind the glass is seen as if it lay infinitely far away: neither its size nor its
+disparity between the eyes is that of the real thing, and a picture on a display has no depth to
+blur.
 """
 
 from __future__ import annotations

@@ -112,6 +112,11 @@ class Gaze(Table):
         description="Of the choice: share of the way between both layers that has to be crossed "
         "beyond the middle.",
     )
+    response_seconds: NonNegative = Field(
+        default=0.25,
+        description="Time constant with which the eyes refocus when they look at the other layer; "
+        "0: at once.",
+    )
     blur: Literal["optical", "gaussian", "paper", "off"] = Field(
         default="optical",
         description="Of the layers that are not looked at. optical: a uniform disc, as in a "

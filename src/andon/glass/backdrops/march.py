@@ -16,10 +16,13 @@ Then the ray is cut with the plane of the pixel that it is behind; where the cut
 is looked at, or in the middle of the interval. It is a hit where a plane is met within its own
 pixel, from the front, or where the interval is less than a pixel. Unless the depths there differ by
 more than 5 %: then the ray has passed behind the nearer surface, and goes on until it is in front
-again. Holes are passed. Planes are met exactly, up to the pixel's normal.
+again. A hole tells nothing: over it a ray stays in front, or behind. Planes are met exactly, up to
+the pixel's normal.
 
-What the eye does not see is not there: the back of things and what they hide cannot be hit. What
-is thinner in the picture than a step may be passed through.
+What the eye does not see is not there: the back of things and what they hide cannot be hit. A ray
+that ends behind something went out of sight at the last edge that it passed; what the eye sees
+there is nearest to what it would find. What is thinner in the picture than a step may be passed
+through.
 """
 
 from __future__ import annotations
@@ -34,14 +37,14 @@ from andon.glass.backdrops.model import MAX_JUMP
 from andon.glass.backdrops.trails import Trail, apart, make_trail
 from andon.quantities import Surface
 
-__all__ = ["LOOKS", "NEAR_PX", "ROUNDS", "STEPS", "march"]
+__all__ = ["LOOKS", "NEAR_PX", "ROUNDS", "STEPS", "Met", "march"]
 
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 
 
 # Equal steps along the whole way; looks at one interval; intervals that may be edges.
-STEPS, LOOKS, ROUNDS = 32, 12, 4
+STEPS, LOOKS, ROUNDS = 128, 12, 8
 # A plane that is met within this many pixels from where it was looked up is the pixel's own: half
 # a pixel's diagonal, and some. Intervals shorter than a pixel are not divided.
 NEAR_PX = 0.75
@@ -57,6 +60,7 @@ class _State:
     low, high : (n,) the ray goes behind something in between, once `closed`; else it is at low.
     front : (n,) it is in front at `low`.
     depth : (n,) what was last in front of it, NaN for nothing yet.
+    edge : (n,) s of the last edge that it passed behind, NaN for none.
     """
 
     step: Float
@@ -64,6 +68,7 @@ class _State:
     high: Float
     front: Bool
     depth: Float
+    edge: Float
 
     def part(self, rows: NDArray[Any]) -> _State:
         return _State(*(np.array(values[rows]) for values in vars(self).values()))
@@ -71,6 +76,22 @@ class _State:
     def put(self, rows: NDArray[Any], other: _State) -> None:
         for name, values in vars(other).items():
             getattr(self, name)[rows] = values
+
+
+@dataclass(frozen=True)
+class Met:
+    """What n rays meet.
+
+    Attributes
+    ----------
+    distance_m : (n,) metres to the hit, or to where a ray went out of sight; inf where neither is.
+    normal : (n, 3) of what was hit; against the ray where it went out of sight; else NaN.
+    hidden : (n,) bool: out of sight.
+    """
+
+    distance_m: Float
+    normal: Float
+    hidden: Bool
 
 
 @dataclass(frozen=True)
@@ -103,23 +124,27 @@ class _Rays:
         return place, np.stack([row, column]), depth, reached
 
 
-def march(surface: Surface, origins: Float, directions: Float, /) -> tuple[Float, Float]:
-    """First hits: (n,) metres along unit `directions` (n, 3) from `origins` (n, 3), inf where
-    there is none; and (n, 3) normals, NaN where there is none.
-    """
+def march(surface: Surface, origins: Float, directions: Float, /) -> Met:
+    """First hits of rays from `origins` (n, 3) along unit `directions` (n, 3)."""
     distance, normals = np.full(len(origins), np.inf), np.full((len(origins), 3), np.nan)
+    edge, in_front = np.full(len(origins), np.nan), np.ones(len(origins), np.bool_)
     trail = make_trail(surface.view, origins, directions)
     rows = np.flatnonzero(trail.last >= trail.first)
     rays = _Rays(surface, trail.part(rows), origins[rows], directions[rows])
     state = _started(rays)
     for _ in range(ROUNDS):
         behind = _stepped(rays, state)
+        edge[rows], in_front[rows] = state.edge, state.front
         rows, rays, state = rows[behind], rays.part(behind), state.part(behind)
         found, normal = _narrowed(rays, state)
         hit = np.isfinite(found)
         distance[rows[hit]], normals[rows[hit]] = found[hit], normal[hit]
         rows, rays, state = rows[~hit], rays.part(~hit), state.part(~hit)
-    return distance, normals
+    edge[rows], in_front[rows] = state.edge, state.front
+    hidden = ~np.isfinite(distance) & ~in_front & np.isfinite(edge)
+    distance[hidden] = trail.part(hidden).distance(edge[hidden])
+    normals[hidden] = -directions[hidden]
+    return Met(distance, normals, hidden)
 
 
 def _started(rays: _Rays) -> _State:
@@ -130,7 +155,8 @@ def _started(rays: _Rays) -> _State:
         steps = np.clip(length, 1, STEPS)
     _, _, depth, reached = rays.pixels(trail.first)
     step = (trail.last - trail.first) / steps
-    return _State(step, trail.first.copy(), trail.first.copy(), ~(depth <= reached), depth)
+    first, edge = trail.first, np.full(len(steps), np.nan)
+    return _State(step, first.copy(), first.copy(), ~(depth <= reached), depth, edge)
 
 
 def _stepped(rays: _Rays, state: _State) -> NDArray[np.int64]:
@@ -143,7 +169,7 @@ def _stepped(rays: _Rays, state: _State) -> NDArray[np.int64]:
         part, old = rays.part(going), state.part(going)
         s = np.minimum(old.low + old.step, part.trail.last)
         _, _, depth, reached = part.pixels(s)
-        front = ~(depth <= reached)
+        front = np.where(np.isfinite(depth), depth > reached, old.front)
         gone = old.front & ~front
         state.high[going[gone]] = s[gone]
         behind.append(going[gone])
@@ -193,6 +219,9 @@ def _narrowed(rays: _Rays, state: _State) -> tuple[Float, Float]:
         kept = ~hit & ~(narrow & ~front)
         going, s, ends = going[kept], s[kept], [end[kept] for end in ends]
     edge = ~np.isfinite(distance)
+    # Where nothing was in front before, the ray began out of sight.
+    passed = edge & np.isfinite(inner.depth) & (inner.low > 0)
+    state.edge[passed] = inner.low[passed]
     state.low[edge], state.front[edge] = state.high[edge], False
     return distance, normals
 

@@ -88,8 +88,9 @@ class Seen:
     light : (n, 3) cd/m²; 0 where `missed`.
     distance_m : (n,) metres along the ray, `FAR_M` where nothing was hit.
     missed : (n,) bool: nothing is there, so the body's environment is what is seen.
-    beside : (n,) bool: the geometry is not in the frame, or is hidden in it; `light` is that of
-        the frame's pixel in the ray's direction, of the nearest one on its border.
+    beside : (n,) bool: the geometry is not in the frame, or is hidden in it. `light` is that of
+        the frame's pixel where the ray went out of sight behind something, and `distance_m` to
+        there; else of that in the ray's direction, of the nearest one on its border.
     """
 
     light: Float

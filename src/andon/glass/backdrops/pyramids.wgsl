@@ -8,7 +8,9 @@
 
 // Footprints along the major axis.
 const TAPS: i32 = 2;
-const MOST_SQUARED: f32 = 1e10;
+// Pixels that a footprint covers, at most; its square. Those of rays along the picture are infinite.
+const MOST: f32 = 1e5;
+const MOST_SQUARED: f32 = MOST * MOST;
 
 struct Pyramid {
   corner: vec2i,
@@ -24,8 +26,9 @@ struct Axis {
   squared: f32,
 };
 
-// `steps`: columns are how far the place moves for a step of one pixel along each axis.
-fn major_axis(steps: mat2x2f) -> Axis {
+// `whole`: columns are how far the place moves for a step of one pixel along each axis.
+fn major_axis(whole: mat2x2f) -> Axis {
+  let steps = mat2x2f(clamp(whole[0], vec2f(-MOST), vec2f(MOST)), clamp(whole[1], vec2f(-MOST), vec2f(MOST)));
   let xx = dot(vec2f(steps[0].x, steps[1].x), vec2f(steps[0].x, steps[1].x));
   let yy = dot(vec2f(steps[0].y, steps[1].y), vec2f(steps[0].y, steps[1].y));
   let xy = dot(vec2f(steps[0].x, steps[1].x), vec2f(steps[0].y, steps[1].y));

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -96,8 +98,9 @@ def _frame(
 
 def _surface(origins: Float, directions: Float, footprint: Footprint, scene: SceneOfView) -> Seen:
     """The scene's geometry; what is in no pixel of the frame counts as infinitely far away."""
-    distance, normals = march(scene.surface, origins, directions)
-    return _in_frame(distance, normals, origins, directions, footprint, scene)
+    met = march(scene.surface, origins, directions)
+    seen = _in_frame(met.distance_m, met.normal, origins, directions, footprint, scene)
+    return replace(seen, beside=seen.beside | (met.hidden & ~seen.missed))
 
 
 def _in_frame(

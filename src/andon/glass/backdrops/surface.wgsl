@@ -4,9 +4,9 @@
 //!import andon/gbuffer/gbuffer.wgsl
 //!import andon/glass/backdrops/trails.wgsl
 
-const STEPS: i32 = 32;
+const STEPS: i32 = 128;
 const LOOKS: i32 = 12;
-const ROUNDS: i32 = 4;
+const ROUNDS: i32 = 8;
 const NEAR_PX: f32 = 0.75;
 const MAX_JUMP: f32 = 0.05;
 // No depth, no plane.
@@ -37,9 +37,11 @@ fn spot_at(trail: Trail, s: f32) -> Spot {
   return Spot(place, pixel, packed, depth, in_front);
 }
 
+// Where nothing was hit but something hides the ray, `distance` is to where it went out of sight.
 struct Met {
   distance: f32,
   normal: vec3f,
+  hidden: bool,
 };
 
 // Where the ray meets the pixel's plane from its front, else NONE.
@@ -48,7 +50,7 @@ fn plane_of(spot: Spot, from_eye: vec3f, D: vec3f) -> Met {
   let facing = dot(N, D);
   let height = dot(N, world_ray(vec2f(spot.pixel) + 0.5) * spot.depth - from_eye);
   let met = spot.depth > 0.0 && facing < 0.0 && height < 0.0;
-  return Met(select(NONE, height / min(facing, -1e-20), met), N);
+  return Met(select(NONE, height / min(facing, -1e-20), met), N, false);
 }
 
 struct Interval {
@@ -58,7 +60,7 @@ struct Interval {
   depth: f32,
 };
 
-// The hit between low and high; NONE at an edge.
+// The hit between low and high; at an edge hidden, and where that is.
 fn narrowed(trail: Trail, whole: Interval, step: f32, from_eye: vec3f, D: vec3f) -> Met {
   var now = whole;
   var low_at = pixel_of(trail_point(trail, now.low));
@@ -77,8 +79,7 @@ fn narrowed(trail: Trail, whole: Interval, step: f32, from_eye: vec3f, D: vec3f)
     if (moves && spot.in_front) {
       now = Interval(s, now.high, select(now.depth, spot.depth, spot.depth > 0.0));
       low_at = spot.place;
-    }
-    if (moves && !spot.in_front) {
+    } else if (moves) {
       now.high = s;
       high_at = spot.place;
     }
@@ -89,7 +90,8 @@ fn narrowed(trail: Trail, whole: Interval, step: f32, from_eye: vec3f, D: vec3f)
       let b = trail_distance(trail, now.high + width);
       let middle = trail_distance(trail, now.low + 0.5 * width);
       let between = select(middle, clamp(plane.distance, max(a, 0.0), b), plane.distance > 0.0);
-      return Met(select(NONE, between, joined), plane.normal);
+      if (joined) { return Met(between, plane.normal, false); }
+      break;
     }
     // Where a ray grazes, depths of whole pixels cross it beside its true place: the first cut may
     // lie outside. Every third time in the middle: cuts with one side alone may creep.
@@ -98,7 +100,8 @@ fn narrowed(trail: Trail, whole: Interval, step: f32, from_eye: vec3f, D: vec3f)
       && number % 3 != 2;
     s = select(select(now.low + 0.5 * width, cut, within), now.high, narrow);
   }
-  return Met(NONE, vec3f(0.0));
+  // Where nothing was in front before, the ray began out of sight.
+  return Met(select(NONE, trail_distance(trail, now.low), now.depth > 0.0), -D, true);
 }
 
 // The first hit; distance NONE where there is none.
@@ -112,6 +115,7 @@ fn march(trail: Trail, from_eye: vec3f, D: vec3f) -> Met {
   let start = spot_at(trail, trail.first);
   var now = Interval(trail.first, trail.first, start.depth);
   var front = start.in_front;
+  var edge = Met(NONE, vec3f(0.0), false);
   for (var round = 0; round < ROUNDS; round++) {
     var behind = false;
     for (var k = 0; k <= STEPS; k++) {
@@ -122,17 +126,19 @@ fn march(trail: Trail, from_eye: vec3f, D: vec3f) -> Met {
       if (behind) {
         now.high = s;
       } else {
+        // Over a hole as before.
+        front = select(front, spot.in_front, spot.depth > 0.0);
         now = Interval(s, s, select(now.depth, spot.depth, spot.depth > 0.0));
-        front = spot.in_front;
       }
     }
     if (!behind) { break; }
     let met = narrowed(trail, now, step, from_eye, D);
-    if (met.distance > 0.0) { return met; }
+    if (!met.hidden) { return met; }
+    if (met.distance > 0.0) { edge = met; }
     now.low = now.high;
     front = false;
   }
-  return Met(NONE, vec3f(0.0));
+  return Met(select(edge.distance, NONE, front), edge.normal, edge.hidden);
 }
 
 fn surface_seen(solid: i32, origin: vec3f, direction: vec3f, footprint: Footprint) -> Seen {
@@ -140,5 +146,5 @@ fn surface_seen(solid: i32, origin: vec3f, direction: vec3f, footprint: Footprin
   let hit = march(make_trail(from_eye, direction), from_eye, direction);
   if (hit.distance <= 0.0) { return frame_light(direction, footprint.course, FAR, true); }
   let moved = footprint_at(footprint, direction, hit.normal, hit.distance);
-  return frame_light(from_eye + hit.distance * direction, moved, hit.distance, false);
+  return frame_light(from_eye + hit.distance * direction, moved, hit.distance, hit.hidden);
 }

@@ -14,6 +14,7 @@
 @group(0) @binding(7) var coarse_surface: texture_2d<f32>;
 @group(0) @binding(8) var coarse_reflected: texture_2d<f32>;
 @group(0) @binding(9) var coarse_rim: texture_2d<f32>;
+@group(0) @binding(10) var whole: texture_2d<f32>;
 
 fn coarse(source: texture_2d<f32>, pixel: vec2f) -> vec4f {
   return textureSampleLevel(source, linear, 0.5 * pixel / vec2f(textureDimensions(source)), 0.0);
@@ -30,10 +31,24 @@ struct Near {
   total: f32,
 }
 
+// Far from the rim coverage is 1, and only light is read. Two loops, of which one has no rounds:
+// a condition inside would cost both reads on machines that run many pixels in step.
 fn near(source: texture_2d<f32>, place: vec2i, rows: i32, size: f32) -> Near {
   let end = vec2i(textureDimensions(source)) - 1;
+  let is_whole = textureLoad(whole, place >> vec2u(WHOLE), 0).x >= 1.0;
+  let inner = select(-1, rows, is_whole);
+  let outer = select(rows, -1, is_whole);
   var sum = Near(vec4f(0.0), 0.0, 0.0);
-  for (var y = -rows; y <= rows; y++) {
+  for (var y = -inner; y <= inner; y++) {
+    let columns = chord(reach_of(size), y);
+    for (var x = -columns; x <= columns; x++) {
+      let w = weight(f32(x * x + y * y), size);
+      sum.light += w * textureLoad(source, clamp(place + vec2i(x, y), vec2i(0), end), 0);
+      sum.total += w;
+    }
+  }
+  sum.cover = sum.total;
+  for (var y = -outer; y <= outer; y++) {
     let columns = chord(reach_of(size), y);
     for (var x = -columns; x <= columns; x++) {
       let at = clamp(place + vec2i(x, y), vec2i(0), end);

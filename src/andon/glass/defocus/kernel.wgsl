@@ -14,3 +14,5 @@ const STEPS: f32 = 64.0;
 // Of what is refracted, sticks to the surface, is mirrored: blurred at all; discs that are small.
 const BLURS = vec3<bool>(true, true, true);
 const NEARS = vec3<bool>(true, true, true);
+// The level whose coverage is 1 where all that small discs reach is glass.
+const WHOLE: u32 = 2u;

@@ -40,6 +40,15 @@ class DiscPlan:
         """What is drawn: the paper's Gaussian is one of another width."""
         return "optical" if self.kind == "optical" else "gaussian"
 
+    @property
+    def whole_level(self) -> int:
+        """The level whose mean coverage is 1 only where all that full-size discs reach is glass.
+
+        A texel of level 2 is a mean of the 3 px around its own 4², of level 3 of 7 px. Full-size
+        discs reach 3.5 px, Gaussians 5 px.
+        """
+        return 2 if self.shape == "optical" else 3
+
     def diameter(self, blur_px: float, /) -> float:
         """Diameter of the disc of equal second moment, px."""
         return min(blur_px, MAX_BLUR_PX) if self.kind != "paper" else (8 * blur_px) ** 0.5
@@ -72,6 +81,7 @@ class DiscPlan:
                 f"const STEPS: f32 = {float(STEPS)};",
                 f"const BLURS = {_booleans(blurs)};",
                 f"const NEARS = {_booleans(nears)};",
+                f"const WHOLE: u32 = {self.whole_level}u;",
             ]
         )
 

@@ -33,7 +33,7 @@ def blurred(layers: Layers, kind: Blur = "optical", /) -> Layers:
         return layers
     shape, cover = kernel(kind), layers.coverage
     surface_px = extended(layers.surface_px, cover)
-    sheet = np.dstack([layers.surface, layers.surface_alpha * cover, cover])
+    sheet = np.dstack([layers.surface, layers.surface_alpha, cover])
     sheet = gathered(sheet, surface_px, shape)
     rim = sheet[..., 4]
 
@@ -50,7 +50,7 @@ def blurred(layers: Layers, kind: Blur = "optical", /) -> Layers:
         coverage=rim,
         refracted=refracted,
         surface=sheet[..., :3],
-        surface_alpha=_divided(sheet[..., 3:4], rim)[..., 0],
+        surface_alpha=sheet[..., 3],
         reflected=reflected,
         refracted_px=refracted_px,
         surface_px=surface_px,

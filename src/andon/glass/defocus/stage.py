@@ -90,6 +90,7 @@ class DefocusStage:
         for level in range(1, DEEPEST + 1):
             self._levels[level] = self._make_level(level)
         self._passes: dict[tuple[str, str, Any], FullscreenPass] = {}
+        self._groups: dict[tuple[int, ...], BindGroup] = {}
 
     def encode(
         self,
@@ -252,12 +253,15 @@ class DefocusStage:
 
     def _group(self, *textures: Texture, table: bool) -> BindGroup:
         """The sampler, the table, and textures that are read between pixels, in order."""
-        resources: dict[int, tuple[str, Any]] = {0: ("linear sampler", self._sampler)}
-        if table:
-            resources[1] = ("float", self._table.view)
-        for texture in textures:
-            resources[len(resources)] = ("smooth", texture.view)
-        return bind_group(self.gpu, resources, "defocus")
+        key = (int(table), *(id(texture) for texture in textures))
+        if key not in self._groups:
+            resources: dict[int, tuple[str, Any]] = {0: ("linear sampler", self._sampler)}
+            if table:
+                resources[1] = ("float", self._table.view)
+            for texture in textures:
+                resources[len(resources)] = ("smooth", texture.view)
+            self._groups[key] = bind_group(self.gpu, resources, "defocus")
+        return self._groups[key]
 
     def _pyramid_group(self, own: dict[str, Texture], beyond: dict[str, Texture]) -> BindGroup:
         own_textures = (own[name] for name in (*LAYERS, "sizes"))
@@ -278,4 +282,5 @@ class DefocusStage:
             level.answers["rim"] if far[1] else level.filled["sizes"],
         )
         sources = (self._sources[name] for name in (*LAYERS, "sizes"))
-        return self._group(*sources, *coarser, table=True)
+        whole = self._levels[self._plan.whole_level].means["sizes"]
+        return self._group(*sources, *coarser, whole, table=True)

@@ -27,7 +27,7 @@ ray against the scene        needs the scene's geometry cannot tell a surface fr
 Every source answers ``at(time_seconds) -> (dioptres | None, state)`` from its past alone; `state`
 is ``seen``, ``held`` or ``fallback``, and there is never a NaN.
 
-Sources: the paper on glass by gaze, section 4.2; Casiez et al. 2012.
+Sources: the paper on glass by gaze, section 4.2; Casiez et al. 2012; Campbell & Westheimer 1960.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ from andon.observer.gaze.filters import FILTERS, Filter, FilterName, filter_of, 
 from andon.observer.gaze.fixation import REASONS, fixations, meeting
 from andon.observer.gaze.lsl import LslGaze
 from andon.observer.gaze.mouse import MouseGaze
+from andon.observer.gaze.refocusing import Refocusing
 from andon.observer.gaze.smoother import Smoothed, Smoother, smoothed
 from andon.observer.gaze.track import GazeTrack, load_track
 
@@ -50,6 +51,7 @@ __all__ = [
     "LayerChoice",
     "LslGaze",
     "MouseGaze",
+    "Refocusing",
     "Smoothed",
     "Smoother",
     "blink_intervals",

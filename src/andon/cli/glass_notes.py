@@ -16,6 +16,8 @@ def glass_notes(report: GlassReport | None, /) -> list[str]:
     """One line each."""
     if report is None:
         return []
+    if not report.counts.glass:
+        return ["glass: none of it is seen: it is beside the picture, behind the eye, or hidden"]
     return [
         _on_focus(report.focus, report.pupil_mm),
         *_on_layers(report),
@@ -55,8 +57,6 @@ def _on_layers(report: GlassReport) -> list[str]:
 
 def _on_counts(report: GlassReport) -> list[str]:
     counts = report.counts
-    if not counts.glass:
-        return ["glass: none of it is seen"]
     told = (
         (counts.lost, "are mirrored inside until they are lost, and black"),
         (counts.missed, "hit no backdrop, and show the light around"),

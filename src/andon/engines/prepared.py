@@ -216,11 +216,11 @@ def _virtual_groups(scene: Scene, surface: SurfaceModel) -> frozenset[str]:
 def _ignored(scene: Scene) -> tuple[str, ...]:
     """Tables and keys that the scene states and this version does not draw."""
     tables = [name for name in LATER_TABLES if getattr(scene, name)]
-    looks = scene.gaze is not None and bool(scene.glass)
-    tables += ["gaze"] if scene.gaze is not None and not looks else []
+    has_glass = bool(scene.glass)
+    tables += ["gaze"] if scene.gaze is not None and not has_glass else []
     later = dict(LATER_KEYS)
-    later["observer"] += () if looks else PUPIL_KEYS
-    later["observer"] += () if looks or scene.glare is not None else ("age",)
+    later["observer"] += () if has_glass else PUPIL_KEYS
+    later["observer"] += () if has_glass or scene.glare is not None else ("age",)
     keys: list[str] = []
     for table, names in later.items():
         stated = getattr(scene, table)

@@ -105,7 +105,8 @@ class Gaze(Table):
     chooses: Literal["layer", "distance"] = Field(
         default="layer",
         description="layer: a measured fixation chooses the surface or the background of the "
-        "glass, whichever is nearer in dioptres; distance: it is focused on as it is.",
+        "glass, whichever is nearer in dioptres by its straight distance, as if the glass did not "
+        "bend light; distance: it is focused on as it is.",
     )
     hysteresis: Fraction = Field(
         default=0.3,

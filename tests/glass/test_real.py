@@ -1,11 +1,15 @@
 """What photographs have and computed scenes do not: holes in things, and things behind things."""
 
+from importlib import resources
+
 import numpy as np
 
 from andon.glass.backdrops import Footprint, look
 from andon.glass.backdrops.march import march
 from andon.glass.model import Backdrop
+from andon.pipeline import render
 from andon.quantities import merged
+from andon.scene import load_scene
 from comparison import assert_agree
 from worlds import block, sheet, unit
 
@@ -45,3 +49,21 @@ def test_what_is_out_of_sight_is_what_was_seen_last():
     left = np.flatnonzero(eye.surface.depth[90] < 1.2).min()
     assert abs(column - left) <= 1
     assert_agree(seen.light[0], eye.luminance[round(row), left], rtol=0.05)
+
+
+def test_the_demonstration_turns_the_motorcycle_upside_down():
+    """A ball before it shows it upside down, and nothing in it is lost."""
+    with resources.as_file(resources.files("andon") / "data" / "motorcycle") as folder:
+        frame = render(load_scene(folder / "glass.toml"), engine="reference")
+    layers, counts = frame.glass.layers, frame.glass.counts
+    assert counts.glass > 15000
+    assert counts.lost == 0
+    assert counts.beside < 0.35 * counts.glass
+    inside = layers.coverage > 0.99
+    rows, columns = np.nonzero(inside)
+    middle = int(rows.mean()), int(columns.mean())
+    reach = (rows.max() - rows.min()) // 4
+    seen = layers.refracted[middle[0] - reach : middle[0] + reach, middle[1]]
+    red = (seen[:, 0] > 2 * seen[:, 1]) & (seen[:, 0] > 5)
+    # In the photograph the tank is above the engine.
+    assert np.flatnonzero(red).mean() > 1.2 * reach

@@ -226,11 +226,13 @@ def glass(
 
 @app.command()
 def demo(
-    name: Annotated[str, typer.Argument(help="photo: a real photograph, relit.")] = "photo",
+    name: Annotated[
+        str, typer.Argument(help="photo: a real photograph, relit; glass: a ball in it.")
+    ] = "photo",
     out: Annotated[Path, typer.Option(help="Folder for the pictures.")] = Path("andon-demo"),
     engine: EngineOption = "auto",
 ) -> None:
-    """Run the demonstration: a real photograph with real geometry, two lamps put into it.
+    """Run a demonstration: a real photograph with real geometry, and lamps or glass put into it.
 
     Example: `andon demo photo --out pictures`
     """

@@ -14,13 +14,16 @@ from andon.errors import InputError, MachineError, nearest_name
 
 __all__ = ["run"]
 
-DEMONSTRATIONS = ("photo",)
+DEMONSTRATIONS = ("photo", "glass")
 # What the second relit picture keeps of the photograph's own light.
 DIMMING = 0.15
 
 
 def run(name: str, out: Path, engine: str) -> None:
-    """Writes contact-sheet.png, relit.png, relit-dimmed.png and illuminance.exr into `out`."""
+    """Writes pictures into `out`.
+
+    photo: contact-sheet.png, relit.png, relit-dimmed.png and illuminance.exr; glass: glass.png.
+    """
     if name not in DEMONSTRATIONS:
         near = nearest_name(name, list(DEMONSTRATIONS))
         raise InputError(
@@ -33,7 +36,14 @@ def run(name: str, out: Path, engine: str) -> None:
     except OSError as error:
         raise MachineError(f"{out}: cannot be made: {error.strerror}") from error
     with resources.as_file(resources.files("andon") / "data" / "motorcycle") as folder:
-        _photo(folder, out, engine)
+        {"photo": _photo, "glass": _glass}[name](folder, out, engine)
+
+
+def _glass(folder: Path, out: Path, engine: str) -> None:
+    from andon.cli.glass import GlassOptions
+    from andon.cli.glass import run as draw
+
+    draw(GlassOptions(folder / "glass.toml", out / "glass.png", engine=engine))
 
 
 def _photo(folder: Path, out: Path, engine: str) -> None:

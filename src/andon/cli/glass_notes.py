@@ -19,13 +19,13 @@ def glass_notes(report: GlassReport | None, /) -> list[str]:
     if not report.counts.glass:
         return ["glass: none of it is seen: it is beside the picture, behind the eye, or hidden"]
     return [
-        _on_focus(report.focus, report.pupil_mm),
+        _on_focus(report.focus, report.pupil_mm, report.limit_dioptres),
         *_on_layers(report),
         *_on_counts(report),
     ]
 
 
-def _on_focus(focus: Focus | None, pupil_mm: float) -> str:
+def _on_focus(focus: Focus | None, pupil_mm: float, limit_dioptres: float) -> str:
     if focus is None:
         return "glass: everything is in focus; [gaze] or --gaze says where the eyes look"
     layer = {"surface": "the surface", "background": "the backdrop"}.get(focus.layer, "a distance")
@@ -35,7 +35,8 @@ def _on_focus(focus: Focus | None, pupil_mm: float) -> str:
         text += "; no good sample of the gaze, the last one is held"
     if focus.state == "fallback":
         text += "; no gaze is known, so it is the surface"
-    return text + ("; nearer or farther they cannot focus" if focus.clamped else "")
+    limit = f"; they focus on infinity to {_place(limit_dioptres)}, which it is not within"
+    return text + (limit if focus.clamped else "")
 
 
 def _on_layers(report: GlassReport) -> list[str]:
@@ -46,9 +47,13 @@ def _on_layers(report: GlassReport) -> list[str]:
         f"{_appears(report.other_vergences)}"
     )
     lines = [
-        f"glass: surface at {_place(seen.surface)}, blur {blur['surface']:.1f} px; "
-        f"backdrop appears at {_appears(seen)}, blur {blur['refracted']:.1f} px (medians); {rest}"
+        f"glass: in the middle of {report.name!r} the surface is at {_place(seen.surface)} and the "
+        f"backdrop appears at {_appears(seen)}; {rest}",
+        f"glass: in the median over all of it the surface is blurred by {blur['surface']:.1f} px, "
+        f"the backdrop by {blur['refracted']:.1f} px",
     ]
+    if report.lamps_left_out:
+        lines.append(f"glass: {report.lamps_left_out} mirrored lamps, the darkest, are left out")
     if report.crossing_dioptres is not None:
         crossing = _place(report.crossing_dioptres)
         lines.append(f"glass: both eyes' rays to the middle of the backdrop cross at {crossing}")

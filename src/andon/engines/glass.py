@@ -119,7 +119,9 @@ class SceneGlass:
         still = ((REAL, self.surface.occluder.geometry), (OBJECTS, self.surface.casters))
         return ShadowRays(Casters(still))
 
-    def report(self, layered: Layered, focus: Focus | None, /) -> GlassReport:
+    def report(
+        self, layered: Layered, focus: Focus | None, lamps: Sequence[Lamp], /
+    ) -> GlassReport:
         """What is worth knowing about a frame's glass."""
         layers, is_glass = layered.layers, layered.layers.coverage > 0
         first = self.model.solids[0]
@@ -130,14 +132,17 @@ class SceneGlass:
             for name in ("surface", "refracted", "reflected")
         }
         return GlassReport(
+            first.name,
             focus,
             self.model.pupil_m * 1000,
+            np.inf if self.gaze is None else self.gaze.limit_dioptres,
             self.vergences,
             first.interfaces,
             self._other_vergences,
             self._crossing_dioptres,
             layered.counts,
             blurs,
+            max(len(self._all_highlights(lamps)) - MAX_HIGHLIGHTS, 0),
         )
 
     @cached_property

@@ -86,7 +86,13 @@ def hierarchy(geometry: Geometry, /) -> Hierarchy:
     triangles = _triangles(geometry)[tree.order]
     sorted_corners = corners[tree.order]
     low, high = _boxes(tree, sorted_corners.min(axis=1), sorted_corners.max(axis=1))
-    orders = [_ordered(tree, low, high, octant) for octant in range(OCTANTS)]
+    sizes, spans = _sizes(tree), np.array(tree.span)
+    is_leaf = np.array(tree.children)[:, 0] < 0
+    leaf = np.where(is_leaf, 8 * spans[:, 0] + spans[:, 1] - spans[:, 0], -1)
+    orders = [
+        _ordered(np.array(_places(tree, sizes, octant)), np.array(sizes), (low, high, leaf))
+        for octant in range(OCTANTS)
+    ]
     return Hierarchy(np.stack(orders), triangles)
 
 
@@ -155,9 +161,8 @@ def _sizes(tree: _Tree) -> list[int]:
     return sizes
 
 
-def _ordered(tree: _Tree, low: Float, high: Float, octant: int) -> Float32:
-    """(n, 2, 4) nodes in the order of one octant."""
-    sizes = _sizes(tree)
+def _places(tree: _Tree, sizes: list[int], octant: int) -> list[int]:
+    """Where each node is in the order of one octant."""
     places = [0] * len(sizes)
     for node, (children, axis) in enumerate(zip(tree.children, tree.axis, strict=True)):
         if children[0] >= 0:
@@ -165,9 +170,12 @@ def _ordered(tree: _Tree, low: Float, high: Float, octant: int) -> Float32:
             near, far = children[falls], children[1 - falls]
             places[near] = places[node] + 1
             places[far] = places[node] + 1 + sizes[near]
-    place, spans = np.array(places), np.array(tree.span)
-    is_leaf = np.array(tree.children)[:, 0] < 0
-    leaf = np.where(is_leaf, 8 * spans[:, 0] + spans[:, 1] - spans[:, 0], -1)
+    return places
+
+
+def _ordered(place: Int, sizes: Int, facts: tuple[Float, Float, Int]) -> Float32:
+    """(n, 2, 4) nodes in the order of one octant; `facts`: corners of their boxes, and leaves."""
+    low, high, leaf = facts
     nodes = np.zeros((len(place), 2, 4), np.float32)
     nodes[place, 0] = np.column_stack([low, place + sizes])
     nodes[place, 1] = np.column_stack([high, leaf])

@@ -17,8 +17,10 @@ class GlassReport:
 
     Attributes
     ----------
+    name : of the first body.
     focus : what the eyes are focused on; None: everything is sharp.
     pupil_mm : diameter.
+    limit_dioptres : the nearest that the eyes can focus on.
     vergences : of the layers of the first body, for the point between the eyes.
     interfaces : that the first body has, 1 or 2.
     other_vergences : of the same body with the other number of interfaces.
@@ -26,13 +28,17 @@ class GlassReport:
         eyes; NaN nowhere, None with one eye.
     counts : pixels.
     blur_px : layer → median diameter in pixels of its blur.
+    lamps_left_out : mirrored lamps beyond the `MAX_HIGHLIGHTS` brightest.
     """
 
+    name: str
     focus: Focus | None
     pupil_mm: float
+    limit_dioptres: float
     vergences: LayerVergences
     interfaces: int
     other_vergences: LayerVergences
     crossing_dioptres: float | None
     counts: Counts
     blur_px: dict[str, float]
+    lamps_left_out: int = 0

@@ -258,7 +258,9 @@ class Renderer:
             maps_redrawn=self._engine.maps_redrawn,
             stage_seconds=self.stage_seconds,
             ignored_tables=self.prepared.ignored,
-            glass=glass.report(layered, self._moment.focus, self._moment.lamps) if glass and layered else None,
+            glass=glass.report(layered, self._moment.focus, self._moment.lamps)
+            if glass and layered
+            else None,
         )
 
 

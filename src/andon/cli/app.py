@@ -189,7 +189,9 @@ def glass(
         typer.Option(help="Folder: surface, refracted and mirrored image apart, and their blurs."),
     ] = None,
     time_seconds: Annotated[float, typer.Option("--time", help="Moment of the session, s.")] = 0.0,
-    samples: Annotated[int, typer.Option(help="Of figure7: paths a pixel of real glass.")] = 64,
+    samples: Annotated[
+        int | None, typer.Option(help="Of figure7: paths a pixel of real glass; default: 64.")
+    ] = None,
     with_scene: Annotated[
         Path | None, typer.Option("--scene", help="Of figure7: another scene than the paper's.")
     ] = None,
@@ -217,9 +219,11 @@ def glass(
         from andon.cli.glass_figure import FigureOptions
         from andon.cli.glass_figure import run as run_figure
 
-        run_figure(FigureOptions(out, with_scene, samples, engine))
+        run_figure(FigureOptions(out, with_scene, 64 if samples is None else samples, engine))
         return
-    from andon.cli.glass import GlassOptions, run
+    from andon.cli.glass import GlassOptions, refuse_of_figure, run
+
+    refuse_of_figure(samples, with_scene)
 
     run(GlassOptions(scene, out, gaze, eye, blur, interfaces, time_seconds, layers, engine))
 

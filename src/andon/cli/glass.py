@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from andon.pipeline import Frame
     from andon.scene import Scene
 
-__all__ = ["GlassOptions", "overridden", "run"]
+__all__ = ["GlassOptions", "overridden", "refuse_of_figure", "run"]
 
 PICTURES = (".png", ".jpg", ".jpeg", ".exr")
 MOVING = (".webp", ".gif", ".apng")
@@ -56,6 +56,15 @@ def run(options: GlassOptions) -> None:
         draw(scene, clip, names)
     else:
         _still(scene, options, names)
+
+
+def refuse_of_figure(samples: int | None, scene: Path | None) -> None:
+    """Raises `InputError` for options that only ``andon glass figure7`` has."""
+    for name, value in (("--samples", samples), ("--scene", scene)):
+        if value is not None:
+            raise InputError(
+                "belongs to andon glass figure7", field=name, remedy="leave it out, or draw that"
+            )
 
 
 def overridden(scene: Scene, options: GlassOptions) -> Scene:
@@ -138,6 +147,8 @@ def _end(scene: Scene) -> float | None:
 
 def _still(scene: Scene, options: GlassOptions, names: tuple[str, ...]) -> None:
     from andon.cli.glass_notes import glass_notes
+    from andon.cli.notes import notes_on_time
+    from andon.cli.seen import notes_on_seen
     from andon.cli.without_photograph import refuse_photograph, white_text
     from andon.pipeline import Renderer
 
@@ -149,7 +160,13 @@ def _still(scene: Scene, options: GlassOptions, names: tuple[str, ...]) -> None:
         from andon.cli.glass_layers import write_layers
 
         write_layers(options.layers, frames, names)
-    for line in (*renderer.prepared.surface.notes, *glass_notes(frames[0].report.glass)):
+    notes = [
+        *notes_on_time(options.time_seconds, _end(scene) or scene.scene.duration_seconds),
+        *renderer.prepared.surface.notes,
+        *glass_notes(frames[0].report.glass),
+        *notes_on_seen(frames[0].seen),
+    ]
+    for line in notes:
         note(line)
     pixels = frames[0].surface.valid.size
     white = white_text(scene, renderer.prepared)

@@ -186,13 +186,16 @@ class SceneGlass:
         A lamp counts with the light that it sends to a body's middle; it is mirrored by all of the
         body, or where something that stands still hides it from the middle, by none of it.
         """
+        return self._all_highlights(lamps)[:MAX_HIGHLIGHTS]
+
+    def _all_highlights(self, lamps: Sequence[Lamp]) -> tuple[Highlight, ...]:
+        """The brightest first."""
         found = [
             one
             for (number, solid), lamp in product(enumerate(self.model.solids), lamps)
             if (one := self._highlight(number, solid, lamp)) is not None
         ]
-        found.sort(key=lambda one: -float(photometric(one.light)))
-        return tuple(found[:MAX_HIGHLIGHTS])
+        return tuple(sorted(found, key=lambda one: -float(photometric(one.light))))
 
     def _highlight(self, number: int, solid: Solid, lamp: Lamp) -> Highlight | None:
         middle, _ = solid.ball_around

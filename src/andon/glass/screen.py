@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 from andon.glass.model import MAX_SOLIDS, Ball, LensShape, Slab, Solid
 from andon.spaces import View, perpendicular, rotate, transform_points
 
-__all__ = ["MOST_CORNERS", "Rectangle", "outline_of", "middle_pixels_per_radian", "pixels_per_radian", "rectangle_of"]
+__all__ = [
+    "MOST_CORNERS",
+    "Rectangle",
+    "middle_pixels_per_radian",
+    "outline_of",
+    "pixels_per_radian",
+    "rectangle_of",
+]
 
 Float = NDArray[np.float64]
 # x, y, width, height in pixels

@@ -1,4 +1,4 @@
-"""Golden pictures of glass in front of a photographed board, whole frames, two beside each other."""
+"""Golden pictures of glass in front of a photographed board: whole frames, two side by side."""
 
 import numpy as np
 import pytest

@@ -38,6 +38,11 @@ TIMES = {
     "color": {"operation": "add", "src_factor": "dst", "dst_factor": "zero"},
     "alpha": {"operation": "add", "src_factor": "zero", "dst_factor": "one"},
 }
+# What is there, less what glass covers.
+LESS = {
+    part: {"operation": "add", "src_factor": "zero", "dst_factor": "one-minus-src"}
+    for part in ("color", "alpha")
+}
 LOST, MISSED, CLAMPED, BESIDE = 1, 2, 4, 8
 
 
@@ -167,6 +172,17 @@ class GlassView:
         if moves or self._stuck is not self.shared.solids.solids:
             self.trace.encode_stickers(encoder)
             self._stuck = self.shared.solids.solids
+
+    @property
+    def within(self) -> tuple[int, int, int, int] | None:
+        """(x, y, width, height) in pixels that holds all glass; None: none is seen."""
+        return self.trace.within
+
+    def hiding(self, bodies: Texture) -> FullscreenPass:
+        """The pass that takes from a picture of luminous bodies what glass is in front of."""
+        group = bind_group(self.gpu, {0: ("float", self.trace.sizes.view)}, "hide")
+        shader = "andon/glass/hide.wgsl"
+        return FullscreenPass(self.gpu, shader, "hide", [bodies.format], [group], blend=LESS)
 
     def read(self) -> Layered:
         """The sharp layers as arrays, and their counts; waits for the device."""

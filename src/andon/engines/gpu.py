@@ -68,6 +68,7 @@ class _View:
             alone = self.composite.lamps.alone
             self.glow = GlowStage(gpu, alone, self.luminance, prepared.glow, view)
             self.filtered = make_texture(gpu, alone.format, view.width, view.height, label="glow")
+            self.hide = None if self.glass is None else self.glass.hiding(alone)
         self.display: DisplayStage | OstStage
         if prepared.exposure.see_through is not None:
             unlit = unlit_linear(frame, prepared.ambient)
@@ -215,6 +216,9 @@ class GpuEngine:
         """Records the scattering of the bodies' light around them."""
         view = self._views[frame.view.name]
         if view.glow is not None and view.has_lamps:
+            if view.glass is not None and view.hide is not None and view.glass.within is not None:
+                alone = view.composite.lamps.alone.view
+                view.hide.encode_within(self.encoder, [alone], view.glass.within)
             view.glow.encode(self.encoder, view.composite.lamps.within)
         return luminance
 

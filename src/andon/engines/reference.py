@@ -172,9 +172,15 @@ class ReferenceEngine:
         """The picture with the light of luminous bodies scattered around them."""
         if self.prepared.glow is None:
             return luminance
-        bodies = composite.bodies_luminance(seen, moment.lamps)
+        bodies = self._unhidden(composite.bodies_luminance(seen, moment.lamps))
         cd_m2 = glow.add_glow(luminance.cd_m2, bodies, self.prepared.glow, frame.view)
         return Luminance(cd_m2, self.prepared.photometry)
+
+    def _unhidden(self, bodies: Float) -> Float:
+        """What is left of bodies' light (H, W, 3) where glass is in front of them."""
+        if self._layered is None:
+            return bodies
+        return bodies * (1 - self._layered.layers.coverage)[..., None]
 
     def encode(self, frame: CameraFrame, luminance: Luminance) -> DisplayImage:
         """8-bit codes for the screen."""
@@ -221,5 +227,6 @@ class ReferenceEngine:
         if not alone.any():
             return None, None
         word, settings = self.prepared.photometry, self.prepared.glow
+        alone = alone if settings is None else self._unhidden(alone)
         scattered = None if settings is None else glow.filtered(alone, settings, frame.view)
         return Luminance(alone, word), None if scattered is None else Luminance(scattered, word)

@@ -15,7 +15,15 @@ from andon.spaces import View, look_at
 from worlds import sheet, write_obj
 
 __all__ = [
-    "BACKDROP", "BALL", "BOARD_Z", "EYE_Z", "HEIGHT", "WIDTH", "board", "glass_tables", "glass_scene",
+    "BACKDROP",
+    "BALL",
+    "BOARD_Z",
+    "EYE_Z",
+    "HEIGHT",
+    "WIDTH",
+    "board",
+    "glass_scene",
+    "glass_tables",
     "write_glass_files",
 ]  # fmt: skip
 

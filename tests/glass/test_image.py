@@ -1,4 +1,4 @@
-"""Golden pictures of glass in front of a photographed board: whole frames, two side by side."""
+"""Golden pictures of glass in front of a photographed board: whole frames, two a picture."""
 
 import numpy as np
 import pytest

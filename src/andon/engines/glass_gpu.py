@@ -16,6 +16,7 @@ from andon.engines.moment import Moment
 from andon.glass.backdrops.buffers import BackdropBuffers
 from andon.glass.backdrops.levels import FrameLevels
 from andon.glass.backdrops.paper import texels_per_metre
+from andon.glass.defocus.frame_stage import FrameDefocusStage
 from andon.glass.defocus.kernels import MAX_BLUR_PX
 from andon.glass.defocus.stage import DefocusStage
 from andon.glass.layers import Counts, Layered, Layers
@@ -104,6 +105,10 @@ class GlassView:
         trace = self.trace
         self._light = self._sticker_light(seen, *lit) if trace.stickers is not None else None
         layers = (trace.refracted, trace.surface, trace.reflected, trace.sizes)
+        self._beside: FrameDefocusStage | None = None
+        if model.defocus_frame:
+            of_view = seen.texture.view, seen.view_buffer
+            self._beside = FrameDefocusStage(gpu, view, of_view, luminance)
         size = (view.width, view.height)
         self._defocus = DefocusStage(gpu, *layers, luminance, model.blur, size)
 
@@ -157,6 +162,9 @@ class GlassView:
         self.trace.encode(encoder)
         if self._light is not None:
             self._light.encode_within(encoder, [self.trace.surface.view], within)
+        if self._beside is not None and focus is not None:
+            # Behind the glass stays the sharp frame: it has been read by now.
+            self._beside.encode(encoder, focus.dioptres, model.pupil_m)
         none = (0.0, 0.0, 0.0)
         most, least = (none, none) if focus is None or not blurs else self._bounds.of(focus)
         self._defocus.encode(encoder, within, most, least)

@@ -19,6 +19,9 @@ ROWS, COLUMNS = np.mgrid[:HEIGHT, :WIDTH]
 IN_FRONT = (abs(ROWS - 100) < 36) & (abs(COLUMNS - 150) < 45)
 PUPIL_M = 0.006
 CODE = 1 / 255
+# Share of pixels that differ by more than 5/255: beside edges, where texels of a quarter size
+# belong to one side, and along the border, whose last texel goes on instead of its last pixel.
+BESIDE_EDGES = 0.04
 
 
 def distances(front):
@@ -64,12 +67,12 @@ def test_a_plane_and_something_in_front(gpu, front, focus):
     difference = np.abs(actual - expected)
     assert np.isfinite(actual).all()
     assert difference.mean() <= CODE
-    assert (difference.max(axis=-1) > 5 * CODE).mean() <= 0.01
+    assert (difference.max(axis=-1) > 5 * CODE).mean() <= BESIDE_EDGES
 
 
 def test_a_constant_stays_constant_to_the_border(gpu):
     flat = np.full((HEIGHT, WIDTH, 3), 0.4)
-    assert_agree(by_gpu(gpu, flat, distances(4.0), 1.5), flat, atol=5e-4)
+    assert_agree(by_gpu(gpu, flat, distances(4.0), 1.5), flat, atol=1e-3)
 
 
 def test_in_focus_it_is_itself(gpu):

@@ -20,6 +20,7 @@ from andon.glass.defocus.frame_stage import FrameDefocusStage
 from andon.glass.defocus.kernels import MAX_BLUR_PX
 from andon.glass.defocus.stage import DefocusStage
 from andon.glass.layers import Counts, Layered, Layers
+from andon.glass.model import Focus
 from andon.glass.screen import pixels_per_radian
 from andon.glass.trace_stage import SolidBuffers, TraceStage
 from andon.gpu.bindings import bind_group
@@ -143,10 +144,11 @@ class GlassView:
     def encode(self, encoder: Any, moment: Moment) -> None:
         """Records the glass over the view's luminance."""
         within = self.trace.within
-        if within is None:
-            return
         focus, model = moment.focus, self.shared.glass.model
         blurs = focus is not None and model.blur != "off"
+        if within is None:
+            self._encode_beside(encoder, focus)
+            return
         self.trace.focus(
             focus.dioptres if focus is not None else 0.0,
             model.pupil_m if blurs else 0.0,
@@ -162,12 +164,16 @@ class GlassView:
         self.trace.encode(encoder)
         if self._light is not None:
             self._light.encode_within(encoder, [self.trace.surface.view], within)
-        if self._beside is not None and focus is not None:
-            # Behind the glass stays the sharp frame: it has been read by now.
-            self._beside.encode(encoder, focus.dioptres, model.pupil_m)
+        # Behind the glass stays the sharp frame: it has been read by now.
+        self._encode_beside(encoder, focus)
         none = (0.0, 0.0, 0.0)
         most, least = (none, none) if focus is None or not blurs else self._bounds.of(focus)
         self._defocus.encode(encoder, within, most, least)
+
+    def _encode_beside(self, encoder: Any, focus: Focus | None) -> None:
+        """The frame by its own depth, where that is asked for."""
+        if self._beside is not None and focus is not None:
+            self._beside.encode(encoder, focus.dioptres, self.shared.glass.model.pupil_m)
 
     def _encode_stickers(self, encoder: Any, moment: Moment) -> None:
         """Anew where something moves: what hides the glass, or the glass itself."""

@@ -9,3 +9,5 @@ const LAST = vec2f(3.4, 4.6);
 const HALF_SHARPENING: f32 = 0.0;
 const REACH: i32 = 2;
 const STEPS: f32 = 64.0;
+// Texels between those that a round of ranges takes together.
+const APART: i32 = 1;

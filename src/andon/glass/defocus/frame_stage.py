@@ -22,15 +22,19 @@ FRAME_RECORD = HostStruct(
 )
 
 FORMAT = "rgba16float"
-SHADER, LEVEL = (f"andon/glass/defocus/{name}.wgsl" for name in ("frame", "frame_level"))
+SHADER, PYRAMID, LEVEL = (
+    f"andon/glass/defocus/{name}.wgsl" for name in ("frame", "frame_pyramid", "frame_level")
+)
 # At full, half and a quarter of the size: diameters in pixels between which discs become the
 # level's; and texels to one side that they reach where they become the next one's.
-FIRST = ((-2.0, -1.0), (4.6, 6.0), (12.0, 15.0))
+FIRST = ((-2.0, -1.0), (4.6, 6.0), (17.0, 21.0))
 NEVER = (1000.0, 1001.0)
-REACH = (3, 8, 8)
+REACH = (3, 6, 8)
 # Second moments along an axis, in texels², that means 1 3 3 1 (¾ px² a level, 4 times that on the
 # next) and linear interpolation (the mean of s·(1 − s) over a texel's pixels) add.
 ADDED = (0.0, 1.5 / 4, 6.5 / 16)
+# Rounds of ranges: texels between those that each takes together.
+APART = (1, 3, 4)
 # Alpha of the frame stays.
 KEEPING = {
     "color": {"operation": "add", "src_factor": "one", "dst_factor": "zero"},
@@ -38,7 +42,7 @@ KEEPING = {
 }
 
 
-def _constants(level: int) -> str:
+def _constants(level: int, apart: int = 1) -> str:
     """What stands in for frame_level.wgsl."""
     texel = 2.0**level
     last = (*FIRST, NEVER)[level + 1]
@@ -49,6 +53,7 @@ def _constants(level: int) -> str:
         "HALF_SHARPENING: f32": ADDED[level] / 2,
         "REACH: i32": REACH[level],
         "STEPS: f32": float(STEPS),
+        "APART: i32": apart,
     }
     text = "".join(f"const {name} = {value};\n" for name, value in lines.items())
     return f"//!import andon/gpu/pi.wgsl\n{text}"
@@ -73,20 +78,26 @@ class FrameDefocusStage:
         self._sums = [make_texture(gpu, FORMAT, *size, label="sums") for size in sizes[1:]]
         shared = {0: ("uint", surface[0]), 1: ("uniform", surface[1])}
         shared |= {2: ("uniform", self._record), 3: ("float", self._table.view)}
+        self._ranges = [make_texture(gpu, FORMAT, *sizes[2], label="ranges") for _ in APART]
         full, half, quarter = self._seen
         variants = gbuffer.projection_variant(view)
         passes = [
             ("seen", [target], 0, full),
             ("halve", [full], 0, half),
             ("halve", [half], 1, quarter),
+            ("range", [quarter], 2, self._ranges[0]),
+            ("range", [self._ranges[0]], 2, self._ranges[1]),
+            ("range", [self._ranges[1]], 2, self._ranges[2]),
             ("sharpen", [half], 1, self._sharp[0]),
             ("sharpen", [quarter], 2, self._sharp[1]),
             ("spread", [self._sharp[0]], 1, self._sums[0]),
             ("spread", [self._sharp[1]], 2, self._sums[1]),
         ]
+        rounds = iter(APART)
+        apart_of = [next(rounds) if name == "range" else 1 for name, *_ in passes]
         self._passes = [
-            (self._pass(name, shared, sources, level, variants), result)
-            for name, sources, level, result in passes
+            (self._pass(name, shared, sources, level, variants, apart), result)
+            for (name, sources, level, result), apart in zip(passes, apart_of, strict=True)
         ]
         levels = [full, half, self._sums[0], quarter, self._sums[1]]
         self._lay = self._pass("lay", shared, levels, 0, variants)
@@ -98,16 +109,20 @@ class FrameDefocusStage:
         textures: list[Texture],
         level: int,
         variants: Mapping[str, str],
+        apart: int = 1,
     ) -> FullscreenPass:
         own = {4 + place: ("float", one.view) for place, one in enumerate(textures)}
+        draws = entry_point in ("spread", "lay")
+        if draws:
+            own[9] = ("float", self._ranges[-1].view)
         return FullscreenPass(
             self.gpu,
-            SHADER,
+            SHADER if draws else PYRAMID,
             entry_point,
             [FORMAT],
             [bind_group(self.gpu, {**shared, **own}, "frame's defocus")],
             structs=gbuffer.STRUCTS | {FRAME_RECORD.name: FRAME_RECORD},
-            variants={**variants, LEVEL: _constants(level)},
+            variants={**variants, LEVEL: _constants(level, apart)},
             blend=KEEPING if entry_point == "lay" else None,
         )
 

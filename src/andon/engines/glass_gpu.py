@@ -16,6 +16,7 @@ from andon.engines.moment import Moment
 from andon.glass.backdrops.buffers import BackdropBuffers
 from andon.glass.backdrops.levels import FrameLevels
 from andon.glass.backdrops.paper import texels_per_metre
+from andon.glass.defocus.frame_stage import FrameDefocusStage
 from andon.glass.defocus.kernels import MAX_BLUR_PX
 from andon.glass.defocus.stage import DefocusStage
 from andon.glass.layers import Counts, Layered, Layers
@@ -109,6 +110,10 @@ class GlassView:
         trace = self.trace
         self._light = self._sticker_light(seen, *lit) if trace.stickers is not None else None
         layers = (trace.refracted, trace.surface, trace.reflected, trace.sizes)
+        self._beside: FrameDefocusStage | None = None
+        if model.defocus_frame:
+            of_view = seen.texture.view, seen.view_buffer
+            self._beside = FrameDefocusStage(gpu, view, of_view, luminance)
         size = (view.width, view.height)
         self._defocus = DefocusStage(gpu, *layers, luminance, model.blur, size)
 
@@ -143,10 +148,11 @@ class GlassView:
     def encode(self, encoder: Any, moment: Moment) -> None:
         """Records the glass over the view's luminance."""
         within = self.trace.within
-        if within is None:
-            return
         focus, model = moment.focus, self.shared.glass.model
         blurs = focus is not None and model.blur != "off"
+        if within is None:
+            self._encode_beside(encoder, focus)
+            return
         self.trace.focus(
             focus.dioptres if focus is not None else 0.0,
             model.pupil_m if blurs else 0.0,
@@ -162,9 +168,16 @@ class GlassView:
         self.trace.encode(encoder)
         if self._light is not None:
             self._light.encode_within(encoder, [self.trace.surface.view], within)
+        # Behind the glass stays the sharp frame: it has been read by now.
+        self._encode_beside(encoder, focus)
         none = (0.0, 0.0, 0.0)
         most, least = (none, none) if focus is None or not blurs else self._bounds.of(focus)
         self._defocus.encode(encoder, within, most, least)
+
+    def _encode_beside(self, encoder: Any, focus: Focus | None) -> None:
+        """The frame by its own depth, where that is asked for."""
+        if self._beside is not None and focus is not None:
+            self._beside.encode(encoder, focus.dioptres, self.shared.glass.model.pupil_m)
 
     def _encode_stickers(self, encoder: Any, moment: Moment) -> None:
         """Anew where something moves: what hides the glass, or the glass itself."""

@@ -20,6 +20,7 @@ from andon.glass.defocus.frame_stage import FrameDefocusStage
 from andon.glass.defocus.kernels import MAX_BLUR_PX
 from andon.glass.defocus.stage import DefocusStage
 from andon.glass.layers import Counts, Layered, Layers
+from andon.glass.model import Focus
 from andon.glass.screen import middle_pixels_per_radian
 from andon.glass.stage import SolidBuffers, TraceStage
 from andon.gpu.bindings import bind_group

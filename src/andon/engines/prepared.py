@@ -218,7 +218,7 @@ def _ignored(scene: Scene) -> tuple[str, ...]:
     tables = [name for name in LATER_TABLES if getattr(scene, name)]
     has_glass = bool(scene.glass)
     tables += ["gaze"] if scene.gaze is not None and not has_glass else []
-    later = dict(LATER_KEYS)
+    later: dict[str, tuple[str, ...]] = dict(LATER_KEYS)
     later["observer"] += () if has_glass else PUPIL_KEYS
     later["observer"] += () if has_glass or scene.glare is not None else ("age",)
     keys: list[str] = []

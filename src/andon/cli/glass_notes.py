@@ -10,6 +10,8 @@ __all__ = ["glass_notes"]
 
 # Parts of the glass below which nobody sees that light had to be made up.
 WORTH_SAYING = 0.001
+# Dioptres: a kilometre.
+INFINITELY_FAR = 1e-3
 
 
 def glass_notes(report: GlassReport | None, /) -> list[str]:
@@ -87,6 +89,8 @@ def _place(dioptres: float) -> str:
     """Dioptres, and metres where there is such a place in front of the eye."""
     if dioptres != dioptres:
         return "no place"
-    if dioptres <= 0:
-        return f"{dioptres:.2f} D" + (" (behind the eye)" if dioptres < 0 else " (infinity)")
+    if abs(dioptres) < INFINITELY_FAR:
+        return "0 D (infinity)"
+    if dioptres < 0:
+        return f"{dioptres:.2f} D (behind the eye)"
     return f"{dioptres:.2f} D ({1 / dioptres:.2f} m)"

@@ -39,7 +39,7 @@ from andon.observer.pupil import pupil_mm
 from andon.quantities import CameraFrame, photometric
 from andon.rays import RayScene
 from andon.scene import Scene
-from andon.spaces import View
+from andon.spaces import View, perpendicular
 from andon.surface.model import SurfaceModel
 from andon.transport.direct import reference as direct
 from andon.transport.direct.balls.model import GlassBall
@@ -54,6 +54,8 @@ Float = NDArray[np.float64]
 PUPIL_MM = 4.0
 # Of the picture's white: what scenes without a photograph are taken to have in the mean.
 GREY_WORLD = 0.18
+# How far beside a hole of the geometry its depth is looked for.
+BESIDE_RADIANS = np.radians(1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -323,4 +325,17 @@ def _distances(backdrop: Backdrop, eye: Float, surface: SurfaceModel) -> Distanc
     if not len(geometry.triangles):
         return lambda origins, directions: np.full(len(origins), np.inf)
     rays = RayScene(geometry)
-    return lambda origins, directions: rays.first_hits(origins, directions).distance
+
+    def to_geometry(origins: Float, directions: Float) -> Float:
+        """Where a ray falls through a hole: the nearest of what is hit a degree beside it."""
+        found = rays.first_hits(origins, directions).distance
+        for row in np.flatnonzero(~np.isfinite(found)):
+            right, down = perpendicular(directions[row])
+            turns = BESIDE_RADIANS * np.exp(2j * np.pi * np.arange(8) / 8)[:, None]
+            around = directions[row] + turns.real * right + turns.imag * down
+            around /= np.linalg.norm(around, axis=1, keepdims=True)
+            starts = np.broadcast_to(origins[row], around.shape)
+            found[row] = rays.first_hits(starts, around).distance.min()
+        return found
+
+    return to_geometry

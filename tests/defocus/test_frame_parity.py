@@ -10,7 +10,6 @@ from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
 from andon.quantities import Surface
 from andon.spaces import pinhole_view
 from comparison import assert_agree
-
 from defocus.pictures import natural
 
 HEIGHT, WIDTH, FOCAL_PX = 216, 288, 1700.0

@@ -25,16 +25,12 @@ from andon.glass.report import GlassReport
 from andon.lamps import (
     AreaLamp,
     DirectionalLamp,
-    DiskLamp,
     HemisphereLamp,
     Lamp,
-    MeshLamp,
     PointLamp,
-    PolygonLamp,
     SkyLamp,
-    SphereLamp,
-    TubeLamp,
 )
+from andon.lamps.kinds import middle_of_area
 from andon.observer.pupil import pupil_mm
 from andon.quantities import CameraFrame, photometric
 from andon.rays import RayScene
@@ -203,9 +199,12 @@ class SceneGlass:
         middle, _ = solid.ball_around
         if isinstance(lamp, SkyLamp | HemisphereLamp):
             return None  # all around, not a highlight
-        distant = isinstance(lamp, DirectionalLamp)
-        place = np.zeros(3) if isinstance(lamp, DirectionalLamp) else _middle_of_lamp(lamp)
-        reach = -lamp.direction if isinstance(lamp, DirectionalLamp) else place - middle
+        place = np.zeros(3)
+        if distant := isinstance(lamp, DirectionalLamp):
+            reach = -lamp.direction
+        else:
+            place = lamp.position_m if isinstance(lamp, PointLamp) else middle_of_area(lamp)
+            reach = place - middle
         distance = float(np.linalg.norm(reach))
         if distance == 0:
             return None
@@ -219,21 +218,6 @@ class SceneGlass:
         if not np.all(light >= 0) or not light.any():
             return None  # light that is taken away, or none
         return Highlight(number, across[0] if distant else place, light, distant)
-
-
-def _middle_of_lamp(lamp: PointLamp | AreaLamp) -> Float:
-    """(3,) of a lamp that has a place."""
-    match lamp:
-        case PointLamp() | SphereLamp() | DiskLamp():
-            return lamp.position_m
-        case TubeLamp():
-            return lamp.ends_m.mean(axis=0)
-        case PolygonLamp():
-            return lamp.vertices_m.mean(axis=0)
-        case MeshLamp():
-            return lamp.positions_m.mean(axis=0)
-        case _:
-            raise TypeError(type(lamp).__name__)
 
 
 def glass_of(

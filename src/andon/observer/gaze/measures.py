@@ -98,6 +98,8 @@ def lag_seconds(times_seconds: Float, dioptres: Float, smooth: Float, /) -> floa
 def thinned(recording: GazeRecording, rate_hz: float, /) -> GazeRecording:
     """The recording as a slower tracker would give it: the last sample before each tick."""
     times = recording.times_seconds
+    if len(times) < 2 or 1 / rate_hz <= np.diff(times).min():
+        return recording  # it is no faster
     ticks = np.arange(times[0], times[-1], 1 / rate_hz)
     keep = np.unique(np.searchsorted(times, ticks, side="right") - 1)
     return GazeRecording(

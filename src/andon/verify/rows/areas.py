@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps import AnyAreaLamp, DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
+from andon.lamps.kinds import middle_of_area
 from andon.pipeline import EngineName, Renderer
 from andon.transport.direct import reference
 from andon.verify.registry import Row
@@ -157,7 +158,7 @@ def _least(lamp: AnyAreaLamp, points: Float, normals: Float) -> Float:
     The receiver's horizon by the closed form; a flat lamp's own, where it is seen edge on, as from
     a small one.
     """
-    reach = _middle(lamp) - points
+    reach = middle_of_area(lamp) - points
     square = np.einsum("ni,ni->n", reach, reach)
     towards = reach / np.sqrt(square)[:, None]
     least = reference.illuminance(lamp, points, _grazing(towards, normals))
@@ -173,18 +174,6 @@ def _area(lamp: DiskLamp | PolygonLamp) -> float:
         return float(np.pi * lamp.radius_m**2)
     arms = lamp.vertices_m - lamp.vertices_m[0]
     return float(np.linalg.norm(np.cross(arms, np.roll(arms, -1, axis=0)).sum(axis=0))) / 2
-
-
-def _middle(lamp: AnyAreaLamp) -> Float:
-    match lamp:
-        case SphereLamp() | DiskLamp():
-            return lamp.position_m
-        case TubeLamp():
-            return lamp.ends_m.mean(axis=0)
-        case PolygonLamp():
-            return lamp.vertices_m.mean(axis=0)
-        case MeshLamp():
-            return lamp.positions_m.mean(axis=0)
 
 
 def _outside(lamp: AnyAreaLamp, points: Float) -> NDArray[np.bool_]:

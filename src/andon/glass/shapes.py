@@ -172,7 +172,7 @@ def _slab(
     half: Float, origins: Float, directions: Float, inside: Bool
 ) -> tuple[Float, NDArray[np.int64]]:
     near = NEAR * float(np.max(half))
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         planes = (np.stack([-half, half])[:, None] - origins) / directions
     # Along a pair of planes a ray is between them for ever, or never.
     between = np.abs(origins) <= half

@@ -92,6 +92,7 @@ def _check(scene: Scene) -> None:
 def _rows(scene: Scene, options: FigureOptions) -> list[tuple[str, str, Row]]:
     """(file name, title, (eye, layer) → picture) of each row of the figure."""
     from andon.glass.environment_map import environment_mapped
+    from andon.lamps import PointLamp
     from andon.pipeline import Renderer
 
     renderers: dict[str, Renderer] = {}
@@ -116,7 +117,12 @@ def _rows(scene: Scene, options: FigureOptions) -> list[tuple[str, str, Row]]:
         ("andon", "Andon", ours),
     ]
     traced = _path_traced(renderers, crop, options.samples)
-    return rows if traced is None else [("path-traced", "path traced", traced), *rows]
+    if traced is None:
+        return rows
+    others = sum(not isinstance(lamp, PointLamp) for lamp in plain.lamps(0.0))
+    if others:
+        note(f"path-traced glass is lit by point lamps only; {others} others are left out")
+    return [("path-traced", "path traced", traced), *rows]
 
 
 def _prepared(scene: Scene, look: str) -> Prepared:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from andon.composite.model import Ambient
 from andon.engines.gaze import SceneGaze, gaze_of
 from andon.engines.probes import SceneProbes
+from andon.glass.backdrops.distances import plane_distance, sphere_distance
 from andon.glass.backdrops.environment import environment_of
 from andon.glass.backdrops.paper import blur_metres
 from andon.glass.backdrops.reference import sticker_at
@@ -286,24 +287,16 @@ def _environments(
 def _distances(backdrop: Backdrop, eye: Float, surface: SurfaceModel) -> Distances:
     """Metres from points along directions to the backdrop, inf where it is missed."""
     if backdrop.kind == "texture":
-        normal = np.cross(backdrop.right_m, backdrop.up_m)
 
         def to_plane(origins: Float, directions: Float) -> Float:
-            with np.errstate(divide="ignore", invalid="ignore"):
-                reach = ((backdrop.centre_m - origins) @ normal) / (directions @ normal)
+            reach = plane_distance(backdrop, origins, directions)
             return np.where(reach > 0, reach, np.inf)
 
         return to_plane
     if backdrop.kind == "frame":
-
-        def to_sphere(origins: Float, directions: Float) -> Float:
-            away = origins - eye
-            along = np.einsum("ni,ni->n", away, directions)
-            half = along**2 - np.einsum("ni,ni->n", away, away) + backdrop.distance_m**2
-            reach = np.sqrt(np.maximum(half, 0)) - along
-            return np.where((half > 0) & (reach > 0), reach, np.inf)
-
-        return to_sphere
+        return lambda origins, directions: sphere_distance(
+            backdrop.distance_m, eye, origins, directions
+        )
     # Thinned triangles: millimetres of backdrop are nothing to a vergence.
     geometry = surface.shadow_casters
     if not len(geometry.triangles):

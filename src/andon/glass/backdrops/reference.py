@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.glass.backdrops.atlas import premultiplied
+from andon.glass.backdrops.distances import plane_axes, plane_distance, sphere_distance
 from andon.glass.backdrops.march import march
 from andon.glass.backdrops.model import FAR_M, Footprint, SceneOfView, Seen
 from andon.glass.backdrops.projecting import moved_pixels
@@ -61,11 +62,10 @@ def _texture(
         return seen
     source = picture or pyramid(backdrop.picture)
     # Of half the plane's width and height: (1, 1) is its upper right corner.
-    axes = np.stack([v / (v @ v) for v in (backdrop.right_m, backdrop.up_m)])
+    axes = plane_axes(backdrop)
     normal = np.cross(axes[0], axes[1])
-    slope = directions @ normal
-    with np.errstate(divide="ignore", invalid="ignore"):
-        distance = ((backdrop.centre_m - origins) @ normal) / slope
+    distance = plane_distance(backdrop, origins, directions)
+    with np.errstate(invalid="ignore"):
         place = (origins + distance[:, None] * directions - backdrop.centre_m) @ axes.T
         hit = np.flatnonzero((distance > 0) & (np.abs(place).max(axis=1) <= 1))
     moved = _part(footprint, hit).at(
@@ -84,12 +84,7 @@ def _frame(
 ) -> Seen:
     """Ray and sphere around the eye, from inside; the frame where the hit is seen."""
     from_eye = origins - scene.view.position
-    along = np.einsum("ni,ni->n", from_eye, directions)
-    # The nearest point to the eye, as a vector: |e|² − along² has no digits left far away.
-    across = from_eye - along[:, None] * directions
-    half = radius * radius - np.einsum("ni,ni->n", across, across)
-    distance = np.sqrt(np.maximum(half, 0)) - along
-    distance = np.where((half > 0) & (distance > 0), distance, np.inf)
+    distance = sphere_distance(radius, scene.view.position, origins, directions)
     normals = (
         from_eye + np.where(np.isfinite(distance), distance, 0)[:, None] * directions
     ) / radius

@@ -1,0 +1,1 @@
+"""Glare: what bright things do in the eye that sees them."""

@@ -1,0 +1,1 @@
+"""Sources of glare found in pictures: blobs of bright pixels, their light and their outlines."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError, MachineError
 from andon.files.pictures import write_hdr
+from andon.files.pictures.radiance_view import line_of_view
 from andon.files.radiance_programs import run_radiance
 from andon.spaces import View
 
@@ -74,11 +75,9 @@ def _view_words(view: View) -> list[str]:
     middle = ((view.width - 1) / 2, (view.height - 1) / 2)
     if abs(view.cx - middle[0]) > 1 or abs(view.cy - middle[1]) > 1:
         raise InputError("the axis must be in the middle for evalglare", field="view")
-    half = np.array([view.width / 2 / view.fx, view.height / 2 / view.fy])
-    half = np.arctan(half) if view.projection == "pinhole" else half
-    across, up = np.degrees(2 * half)
-    kind = "-vtv" if view.projection == "pinhole" else "-vta"
-    return [kind, "-vh", f"{across:.6f}", "-vv", f"{up:.6f}"]
+    line = line_of_view(view)
+    assert line is not None  # latlong was refused
+    return line.split()[:5]
 
 
 def _parsed(printed: str) -> Evalglare:

@@ -117,7 +117,7 @@ def find_sources(
     power = photometric(moments.illuminance_lux)
     return FoundSources(
         _named(sources_of(moments.merged(group, kept)), labels, clipped),
-        np.bincount(labels.ravel()[inside], omega, kept + 1)[1:],
+        np.bincount(labels.ravel()[inside], omega, kept + 1)[1:].astype(np.float64),
         labels,
         float(threshold),
         float(background),

@@ -1,0 +1,1 @@
+"""The veil of a whole picture: all its light, scattered in angle space."""

@@ -136,13 +136,14 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
     """Reads all that `scene` names. Raises `InputError` for whatever does not fit.
 
     With `drawn` False there are no frames where there is no photograph, and neither rig, white nor
-    a volume of probes are needed: for whoever makes light, as bakes do.
+    a volume of probes are needed: for whoever makes light, as bakes do. Then no lamp flickers.
     """
+    scene = scene if drawn else scene.steady()
     probes, notes = probes_of(scene) if drawn else (None, ())
     seen = _photographed if scene.has_photograph else _all_virtual
     frames, ambient, surface = seen(scene, probes, drawn)
     virtual = _virtual_groups(scene, surface)
-    lamps = (*resolve_lamps(scene, 0.0), *resolve_sources(scene, 0.0, virtual))
+    lamps = (*resolve_lamps(scene.steady(), 0.0), *resolve_sources(scene, 0.0, virtual))
     if frames:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
@@ -175,7 +176,7 @@ _Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel]
 def _all_virtual(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen:
     """Frames, light and surface of a scene without a photograph."""
     ambient = ambient_without_photograph(scene)
-    lamps = resolve_lamps(scene, 0.0)
+    lamps = resolve_lamps(scene.steady(), 0.0)
     frames = sky_frames(scene, lamps, white_cd_m2(scene, ambient, lamps)) if drawn else {}
     return frames, ambient, virtual_surface(scene)
 

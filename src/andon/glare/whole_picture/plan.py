@@ -25,7 +25,6 @@ Conventions, for the light and the veil of each channel:
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,16 +33,16 @@ from numpy.typing import NDArray
 from andon.glare.kernel import Kernel
 from andon.glare.whole_picture.charts import Chart, charts_of
 from andon.glare.whole_picture.far import Far, far_level, plan_far
-from andon.glare.whole_picture.mixture import Mixture, near_share
-from andon.glare.whole_picture.splines import sigma_cells
+from andon.glare.whole_picture.ladder import Ladder
+from andon.glare.whole_picture.mixture import Mixture
 from andon.spaces import View
 
 __all__ = ["WholePlan", "plan_whole"]
 
 Float = NDArray[np.float64]
 
-# χ begins to fall at so many coarse cells on the axis, and ends at so many times as much.
-FAR_CELLS = (1.0, 4.0)
+# χ begins to fall at so many coarse cells on the axis, and ends at so many.
+FAR_CELLS = (0.8, 3.2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,19 +53,14 @@ class WholePlan:
     ----------
     view, kernel : what it is for.
     charts : one, or two that share the sphere.
-    levels : T, the last level.
-    log_sigma : (n,) evenly spaced ln σ, σ in radians.
-    level_share : (n,) share of a point's light that a level of that σ spreads; linear in between,
-        held beyond the ends.
+    ladder : the levels' shares of light.
     far : the rest, between all pairs of coarse cells.
     """
 
     view: View
     kernel: Kernel
     charts: tuple[Chart, ...]
-    levels: int
-    log_sigma: Float
-    level_share: Float
+    ladder: Ladder
     far: Far
 
     @property
@@ -74,21 +68,19 @@ class WholePlan:
         """Whether two charts share the sphere."""
         return len(self.charts) == 2
 
-    def sigma(self, chart: Chart, level: int, scale: Float, /) -> Float:
-        """(...) σ in radians of a level where the chart's scale is a."""
-        return sigma_cells(level) * 2 ** (level - 1) * chart.cell * scale
+    @property
+    def levels(self) -> int:
+        """T, the last level that is needed: at least the far part's."""
+        return max(self.ladder.count, self.far.level)
 
-    def root(self, chart: Chart, level: int, scale: Float, /) -> Float:
+    def root(self, level: int, scale: Float, /) -> Float:
         """(...) √w of a level where the chart's scale is a, units per radian."""
-        return np.sqrt(self._share(self.sigma(chart, level, scale))) / scale
+        return np.sqrt(self.ladder.share_of(level, scale)) / scale
 
-    def resolved(self, chart: Chart, scale: Float, /) -> Float:
+    def resolved(self, scale: Float, /) -> Float:
         """(...) share of light that leaves its place, where the chart's scale is a."""
-        near = (self._share(self.sigma(chart, n, scale)) for n in range(1, self.levels + 1))
+        near = (self.ladder.share_of(level, scale) for level in range(1, self.levels + 1))
         return sum(near, np.full_like(scale, self.far.share))
-
-    def _share(self, sigma: Float) -> Float:
-        return np.interp(np.log(sigma), self.log_sigma, self.level_share)
 
 
 def plan_whole(view: View, kernel: Kernel, /) -> WholePlan:
@@ -96,18 +88,8 @@ def plan_whole(view: View, kernel: Kernel, /) -> WholePlan:
     charts = charts_of(view)
     mixture = Mixture.of(kernel)
     level = far_level(charts)
-    # χ falls from 1 to 0 between these, absolute angles; see `near_share`.
-    start = charts[0].cell * 2 ** (level - 1) * FAR_CELLS[0]
-    span = (start, start * FAR_CELLS[1])
-    near = near_share(mixture.log_sigma, span)
+    cell = charts[0].cell
+    start, end = (cell * 2 ** (level - 1) * cells for cells in FAR_CELLS)
     least = min(float(c.scale(c.cell_directions(level)).min()) for c in charts)
-    last = math.log2(span[1] / (sigma_cells(2) * charts[0].cell * least))
-    return WholePlan(
-        view,
-        kernel,
-        charts,
-        max(level, 1 + math.floor(last)),
-        mixture.log_sigma,
-        mixture.share * near * math.log(2),
-        plan_far(charts, level, kernel, mixture, near),
-    )
+    ladder = Ladder.of(mixture, cell, (start, end), least)
+    return WholePlan(view, kernel, charts, ladder, plan_far(charts, level, kernel, mixture, ladder))

@@ -1,9 +1,8 @@
 """Far light: between all pairs of coarse cells, by the true angle between their directions.
 
-Near a cell its kernel is what χ leaves of the mixture, ``∫ W·(1 − χ)·G dlnσ``; from a few cells on
-it is the model less what the levels make of that very pair of cells. So far away the sum of both
-is the model, with its fade beyond 90°, without the ripple of a ratio of 2, and with light that
-lies beyond the border of a chart.
+Near a cell its kernel is what χ leaves of the mixture, ``K₀ + ∫ W·(1 − χ)·G dlnσ``; from a few
+cells on it is the model less what the levels make of that very pair of cells. So far away the sum
+of both is the model, with its fade beyond 90°, and with light beyond the border of a chart.
 """
 
 from __future__ import annotations
@@ -122,13 +121,13 @@ class _Blend:
     width: float
 
     def matrix(self, to: Float, sources: Float, scale: Float, covered: NDArray[np.bool_]) -> Float:
-        """(m, n) sr⁻¹ between directions; `scale` (m, n) is √(ab), `covered` (n,) what levels see."""
+        """(m, n) in sr⁻¹; `scale` (m, n) is √(ab), `covered` (n,) whether the levels have it."""
         chord = np.linalg.norm(to[:, None] - sources, axis=-1)
         theta = 2 * np.arcsin(np.minimum(chord / 2, 1))
         part = self._part(theta)
         # The splines at both ends add their own variance; what is narrower is left to them alone.
         spline = SPLINES_VARIANCE * (self.width * scale) ** 2
-        near = np.zeros_like(chord)
+        near = np.full_like(chord, self.mixture.floor)
         step = self.mixture.log_sigma[1] - self.mixture.log_sigma[0]
         shares = step * self.mixture.share * self.ladder.left
         for log_sigma, share in zip(self.mixture.log_sigma, shares, strict=True):
@@ -143,7 +142,7 @@ class _Blend:
         count = 4000
         theta = (np.arange(count) + 0.5) * (np.pi / count)
         part = self._part(theta)
-        rest = self.mixture.per_sr(theta, self.ladder.left)
+        rest = self.mixture.floor + self.mixture.per_sr(theta, self.ladder.left)
         near = self.mixture.per_sr(theta, 1 - self.ladder.left)
         value = (1 - part) * rest + part * (self.kernel.per_sr(theta, core=True) - near)
         return float(np.sum(value * np.sin(theta)) * (np.pi / count) * 2 * np.pi)

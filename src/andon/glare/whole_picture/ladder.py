@@ -1,7 +1,8 @@
-"""How much light each level of the pyramid spreads, where the chart's scale is a.
+"""How much light each filter of each level spreads, where the chart's scale is a.
 
-Level l has ``σ_l = sigma_cells(l)·2^(l−1)·cell·a`` and takes ``ln 2·W(σ_l)·χ(σ_l)`` of a point's
-light. χ goes from 1 to 0 between two angles; what is left of the mixture is the far part's.
+A *rung* is a filter of a level: rung k has ``σ_k = sigma_cells·2^(level−1)·cell·a`` and takes
+``W(σ_k)·χ(σ_k)·(ln σ_{k+1} − ln σ_{k−1})/2`` of a point's light. χ goes from 1 to 0 between two
+angles; what is left of the mixture is the far part's.
 """
 
 from __future__ import annotations
@@ -13,57 +14,89 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.glare.whole_picture.mixture import Mixture, bump
-from andon.glare.whole_picture.splines import sigma_cells
+from andon.glare.whole_picture.splines import filters, sigma_cells
 
-__all__ = ["Ladder"]
+__all__ = ["Ladder", "Rung"]
 
 Float = NDArray[np.float64]
 
-# Level 1 stands for everything finer, too; measured on θ⁻²…θ⁻³, six pixels away and beyond.
-FIRST_SHARE = 0.85
+# Widths of the first rungs in ln σ, where σ does not grow evenly and the first stands for all that
+# is finer, too: least squares over θ⁻²…θ⁻³, from 2.8 cells of level 1 on (1.9 % at most).
+FIRST_WIDTHS = (0.667, 0.670, 0.464, 0.306)
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One filter of one level.
+
+    Attributes
+    ----------
+    level, which : of `splines.filters(level)`.
+    sigma : radians where the chart's scale is 1.
+    width : in ln σ.
+    """
+
+    level: int
+    which: int
+    sigma: float
+    width: float
 
 
 @dataclass(frozen=True, eq=False)
 class Ladder:
-    """The levels of all charts.
+    """The rungs of all charts.
 
     Attributes
     ----------
-    cell : of level 1, chart units; all charts have the same.
-    count : T, the last level.
+    rungs : by σ.
     log_sigma : (n,) evenly spaced ln σ, σ in radians.
-    share : (n,) of a point's light that a level of that σ spreads; linear in between, held beyond
-        the ends.
+    share : (n,) W·χ, share of a point's light per ln σ; linear in between, held beyond the ends.
     left : (n,) 1 − χ.
     """
 
-    cell: float
-    count: int
+    rungs: tuple[Rung, ...]
     log_sigma: Float
     share: Float
     left: Float
 
     @staticmethod
     def of(mixture: Mixture, cell: float, span: tuple[float, float], least_scale: float) -> Ladder:
-        """The levels of `mixture` with χ falling over the σ of `span`, in radians."""
-        along = (mixture.log_sigma - math.log(span[0])) / math.log(span[1] / span[0])
-        left = np.clip(along, 0, 1) ** 2 * (3 - 2 * np.clip(along, 0, 1))
-        last = math.log2(span[1] / (sigma_cells(64) * cell * least_scale))
-        share = math.log(2) * mixture.share * (1 - left)
-        return Ladder(cell, 1 + max(0, math.ceil(last)), mixture.log_sigma, share, left)
+        """The rungs of `mixture` for charts of cells of `cell` and scales from `least_scale` on.
 
-    def sigma(self, level: int, scale: Float, /) -> Float:
-        """(...) σ in radians of a level where the chart's scale is a."""
-        return sigma_cells(level) * 2 ** (level - 1) * self.cell * scale
+        χ falls over the σ of `span`, in radians.
+        """
+        along = np.clip((mixture.log_sigma - math.log(span[0])) / math.log(span[1] / span[0]), 0, 1)
+        left = along**2 * (3 - 2 * along)
+        share = mixture.share * (1 - left)
+        return Ladder(_rungs(cell, span[1] / least_scale), mixture.log_sigma, share, left)
 
-    def share_of(self, level: int, scale: Float, /) -> Float:
-        """(...) share of a point's light that a level spreads where the chart's scale is a."""
-        share = np.interp(np.log(self.sigma(level, scale)), self.log_sigma, self.share)
-        return share * FIRST_SHARE if level == 1 else share
+    @property
+    def levels(self) -> int:
+        """The last level with a rung."""
+        return self.rungs[-1].level
+
+    def share_of(self, rung: Rung, scale: Float, /) -> Float:
+        """(...) share of a point's light that a rung spreads where the chart's scale is a."""
+        log_sigma = math.log(rung.sigma) + np.log(scale)
+        return rung.width * np.interp(log_sigma, self.log_sigma, self.share)
 
     def per_sr(self, chord: Float, scale: Float, /) -> Float:
-        """(...) what all levels make at a chord between places of scales a and b, √(ab) given."""
-        levels = range(1, self.count + 1)
-        return np.sum(
-            [self.share_of(n, scale) * bump(chord, self.sigma(n, scale)) for n in levels], 0
-        )
+        """(...) what all rungs make at a chord between places of scales a and b, √(ab) given."""
+        parts = [self.share_of(r, scale) * bump(chord, r.sigma * scale) for r in self.rungs]
+        return np.sum(parts, 0)
+
+
+def _rungs(cell: float, most_sigma: float) -> tuple[Rung, ...]:
+    """Until the least of σ is beyond `most_sigma`, where no light is left."""
+    found: list[tuple[int, int, float]] = []
+    level = 1
+    while not found or found[-1][2] < most_sigma:
+        for which in range(len(filters(level))):
+            found.append((level, which, sigma_cells(level, which) * 2 ** (level - 1) * cell))
+        level += 1
+    sigmas = np.log([sigma for _, _, sigma in found])
+    between = [sigmas[0], *sigmas, 2 * sigmas[-1] - sigmas[-2]]
+    widths = (np.array(between[2:]) - between[:-2]) / 2
+    first = FIRST_WIDTHS[: len(widths)]
+    widths[: len(first)] = first
+    return tuple(Rung(*f, float(width)) for f, width in zip(found, widths, strict=True))

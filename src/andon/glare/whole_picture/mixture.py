@@ -1,4 +1,4 @@
-"""The kernel as a mixture of round bumps over the chord: ``K(θ) ≈ ∫ W(σ)·G_σ dlnσ``.
+"""The kernel as a mixture of round bumps over the chord: ``K(θ) ≈ K₀ + ∫ W(σ)·G_σ dlnσ``.
 
 G_σ, of σ radians and unit energy, is the point-spread function of a pyramid's level, averaged over
 places and azimuths: all but a Gaussian. W is the share of a point's light per ln σ. All spread
@@ -23,10 +23,12 @@ __all__ = ["Mixture", "bump"]
 Float = NDArray[np.float64]
 
 # σ of the mixture, and how many steps an octave has.
-SIGMA_DEGREES = (0.03, 64.0)
+SIGMA_DEGREES = (0.03, 45.0)
 PER_OCTAVE = 4
-# Angles of the fit; what fades beyond 90° is left to the far part, which has it exactly.
-FIT_DEGREES = (0.1, 80.0)
+# Angles of the fit; what comes beyond is left to the far part, which has it exactly.
+FIT_DEGREES = (0.1, 40.0)
+# K₀, in units of the least value within 90°: skirts go over into a constant.
+FLOOR = 0.95
 # Penalty of a second difference of 1 against a relative error of 1 of the kernel.
 SMOOTHNESS = 0.03
 ROUNDS = 30
@@ -35,7 +37,7 @@ STEPS, REACH_SIGMAS = 512, 7.0
 
 
 def _table() -> tuple[Float, Float]:
-    sigma = sigma_cells(64)
+    sigma = sigma_cells(64, 0)
     places = np.linspace(0, REACH_SIGMAS, STEPS + 1)
     return places, level_profile(places * sigma) * sigma**2
 
@@ -44,7 +46,7 @@ PLACES, DENSITY = _table()
 
 
 def bump(chord: Float, sigma: Float, /) -> Float:
-    """(...) density in sr⁻¹ of a level's bump of σ radians at a chord; of unit energy in a chart."""
+    """(...) sr⁻¹ of a level's bump of σ radians at a chord; its energy in a chart is 1."""
     return np.interp(chord / sigma, PLACES, DENSITY) / sigma**2
 
 
@@ -56,23 +58,28 @@ class Mixture:
     ----------
     log_sigma : (n,) evenly spaced, σ in radians.
     share : (n,) W > 0, share of the light per ln σ.
+    floor : K₀ in sr⁻¹, the same at all angles.
     """
 
     log_sigma: Float
     share: Float
+    floor: float
 
     @staticmethod
     def of(kernel: Kernel, /) -> Mixture:
         """The mixture of a kernel."""
-        ends = np.log(np.radians(SIGMA_DEGREES))
-        count = round((ends[1] - ends[0]) / math.log(2) * PER_OCTAVE)
-        log_sigma = ends[0] + np.arange(count + 1) * (math.log(2) / PER_OCTAVE)
-        theta = np.exp(np.linspace(*np.log(np.radians(FIT_DEGREES)), 4 * count))
+        least, most = (math.log2(math.radians(end)) for end in SIGMA_DEGREES)
+        count = round((most - least) * PER_OCTAVE)
+        log_sigma = (least + np.arange(count + 1) / PER_OCTAVE) * math.log(2)
+        theta = np.radians(np.geomspace(*FIT_DEGREES, 4 * count))
         bumps = _bumps(theta, log_sigma)
-        return Mixture(log_sigma, _fitted(bumps, kernel.per_sr(theta, core=True), log_sigma))
+        skirt = kernel.spread.bloom_per_sr(np.linspace(FIT_DEGREES[1], 90, 51))
+        floor = FLOOR * float(skirt.min())
+        wanted = kernel.per_sr(theta, core=True) - floor
+        return Mixture(log_sigma, _fitted(bumps, wanted, log_sigma), floor)
 
     def per_sr(self, theta_radians: Float, /, weight: Float | float = 1.0) -> Float:
-        """(...) the mixture at angles (...), in sr⁻¹, each σ's share times `weight` (n,)."""
+        """(...) the integral at angles (...), in sr⁻¹, each σ's share times `weight` (n,)."""
         return _bumps(theta_radians, self.log_sigma) @ (self.share * weight)
 
 

@@ -5,7 +5,7 @@
     pixels ──reduce──▶ blocks ──spline──▶ D₁ ─▶ D₂ ─▶ … ─▶ D_T        light, [1 3 3 1]/8 a step
                                           │     │          │ far level F: M·D_F, true angles
     pixels ◀─expand── blocks ◀──spline── A₁ ◀─ A₂ ◀─ … ◀─ A_T         veil, [3 1]/4 a step
-                                        A_l = √w_l·P(√w_l·D_l) + expand(A_{l+1})
+                                        A_l = Σ √w·P(√w·D_l) + expand(A_{l+1})
 
 Conventions, for the light and the veil of each channel:
 
@@ -15,8 +15,10 @@ Conventions, for the light and the veil of each channel:
   of level 1 around it, B the quadratic B-spline; `charts.Chart.array_place` says where it lies;
 - levels hold D on the same scale: reduce averages, expand interpolates. Cells 2p and 2p + 1 of one
   level lie in cell p of the next; both have `MARGIN` cells more on each side, and zeros beyond;
-- √w_l of a cell is `WholePlan.root`, a function of the chart's scale a there. P is separable,
-  `splines.taps(level)` along each axis, of sum 1: the middle tap and those to one side;
+- the sum is over the level's rungs, one filter P each (two from level 3 on, none at the top where
+  only the far part is): √w of a cell is `WholePlan.root`, a function of the chart's scale a there,
+  and P is separable, `splines.filters(level)[rung.which]` along each axis, of sum 1: the middle
+  tap and those to one side;
 - far: A_F += M·D_F from `light_cells` to `receiving_cells`, before A_F is expanded;
 - veil of a block = Σ charts share(direction)·Σ B(u)·B(v)·A₁;
 - what stays in a pixel is `1 − resolved(a)`, a of the chart that it is read from (of the larger
@@ -33,7 +35,7 @@ from numpy.typing import NDArray
 from andon.glare.kernel import Kernel
 from andon.glare.whole_picture.charts import Chart, charts_of
 from andon.glare.whole_picture.far import Far, far_level, plan_far
-from andon.glare.whole_picture.ladder import Ladder
+from andon.glare.whole_picture.ladder import Ladder, Rung
 from andon.glare.whole_picture.mixture import Mixture
 from andon.spaces import View
 
@@ -53,7 +55,7 @@ class WholePlan:
     ----------
     view, kernel : what it is for.
     charts : one, or two that share the sphere.
-    ladder : the levels' shares of light.
+    ladder : the filters of the levels and their shares of light.
     far : the rest, between all pairs of coarse cells.
     """
 
@@ -71,15 +73,15 @@ class WholePlan:
     @property
     def levels(self) -> int:
         """T, the last level that is needed: at least the far part's."""
-        return max(self.ladder.count, self.far.level)
+        return max(self.ladder.levels, self.far.level)
 
-    def root(self, level: int, scale: Float, /) -> Float:
-        """(...) √w of a level where the chart's scale is a, units per radian."""
-        return np.sqrt(self.ladder.share_of(level, scale)) / scale
+    def root(self, rung: Rung, scale: Float, /) -> Float:
+        """(...) √w of a rung where the chart's scale is a, units per radian."""
+        return np.sqrt(self.ladder.share_of(rung, scale)) / scale
 
     def resolved(self, scale: Float, /) -> Float:
         """(...) share of light that leaves its place, where the chart's scale is a."""
-        near = (self.ladder.share_of(level, scale) for level in range(1, self.levels + 1))
+        near = (self.ladder.share_of(rung, scale) for rung in self.ladder.rungs)
         return sum(near, np.full_like(scale, self.far.share))
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SPLINES_VARIANCE", "level_profile", "sigma_cells", "spline_weights", "taps"]
+__all__ = ["SPLINES_VARIANCE", "filters", "level_profile", "sigma_cells", "spline_weights"]
 
 Float = NDArray[np.float64]
 
@@ -38,33 +38,37 @@ def _half(variance: float, radius: int) -> tuple[float, ...]:
     return tuple(float(v) for v in values / (values[0] + 2 * values[1:].sum()))
 
 
-# P along each axis, the middle tap and those to one side. Of all with taps to three cells these
-# make the veil of a point (θ⁻², θ⁻²·⁵, θ⁻³; random places) roundest and steadiest: 1 % of it in
-# all. Level 1 needs less, since blocks spread already.
-TAPS = _half(1.19, 3)
-TAPS_FIRST = _half(0.8, 2)
+# P along each axis, the middle tap and those to one side. From level 3 on there are two, the wider
+# √2 of the other all in all: a ratio of 2 makes a ripple of 1.2 % (θ⁻²·⁷), one of √2 of 0.1 %, and
+# these levels are cheap. The less wide P is, the more a point's veil depends on where in a cell it
+# lies: with these by 1 %.
+FIRST = _half(0.8, 2)
+SECOND = _half(1.0, 3)
+NARROW = _half(0.8, 3)
+WIDE = _half(2.0, 4)
 
 
-def taps(level: int, /) -> tuple[float, ...]:
-    """The middle tap of P and those to one side, of a level ≥ 1."""
-    return TAPS_FIRST if level == 1 else TAPS
+def filters(level: int, /) -> tuple[tuple[float, ...], ...]:
+    """One P or two of a level ≥ 1, each as the middle tap and those to one side; each sums to 1."""
+    return ((FIRST,), (SECOND,))[level - 1] if level < 3 else (NARROW, WIDE)
 
 
-def sigma_cells(level: int, /) -> float:
-    """σ of a level's point-spread function in its own cells."""
-    filtered = 2 * sum(tap * (i + 1) ** 2 for i, tap in enumerate(taps(level)[1:]))
+def sigma_cells(level: int, which: int, /) -> float:
+    """σ of a level's point-spread function with one of its filters, in its own cells."""
+    side = filters(level)[which][1:]
+    filtered = 2 * sum(tap * (i + 1) ** 2 for i, tap in enumerate(side))
     return float(np.sqrt(SPLINES_VARIANCE + filtered + BLOCKS_VARIANCE / 4 ** (level - 1)))
 
 
 def level_profile(radii: Float, /) -> Float:
-    """(n,) density per cell² of ``B ∗ P ∗ B`` at radii (n,) in cells, mean over all azimuths."""
+    """(n,) density per cell² of ``B ∗ NARROW ∗ B`` at radii (n,) in cells, mean over azimuths."""
     azimuth = (np.arange(16) + 0.5) * (np.pi / 4 / 16)
     x, y = radii[:, None] * np.cos(azimuth), radii[:, None] * np.sin(azimuth)
     return np.mean(_along(x) * _along(y), 1)
 
 
 def _along(x: Float) -> Float:
-    sums = [TAPS[abs(n)] * _quintic(x - n) for n in range(-len(TAPS) + 1, len(TAPS))]
+    sums = [NARROW[abs(n)] * _quintic(x - n) for n in range(-len(NARROW) + 1, len(NARROW))]
     return np.sum(sums, 0)
 
 

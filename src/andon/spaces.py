@@ -200,7 +200,10 @@ class View:
         return self.directions_at(self.pixel_grid())
 
     def directions_at(self, pixels: NDArray[Any], /) -> Float:
-        """(..., 3) unit directions in the camera frame at pixel coordinates (..., 2)."""
+        """(..., 3) unit directions in the camera frame through pixel coordinates (..., 2).
+
+        Beyond the border as well: latlong goes round, and over the poles down on the other side.
+        """
         x, y = np.moveaxis(np.asarray(pixels, np.float64), -1, 0)
         if self.projection == "latlong":
             azimuth = (x + 0.5) / self.width * 2 * np.pi - np.pi

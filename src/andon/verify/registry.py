@@ -52,6 +52,7 @@ def rows() -> tuple[Row, ...]:
         areas,
         caustic,
         gaze,
+        glare_flicker,
         glass,
         glass_blur,
         glass_frame,
@@ -83,4 +84,5 @@ def rows() -> tuple[Row, ...]:
         *glass_blur.ROWS,
         *glass_frame.ROWS,
         *caustic.ROWS,
+        *glare_flicker.ROWS,
     )

@@ -15,6 +15,7 @@ from andon.engines.glass import SceneGlass
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import lampless_pixels, lit_pixels
+from andon.glare.whole_picture import reference as whole_picture
 from andon.glass import reference as glass
 from andon.glass.backdrops.model import SceneOfView
 from andon.glass.backdrops.paper import preblurred, with_blurred_pictures
@@ -50,6 +51,7 @@ class ReferenceEngine:
         self._surfaces: dict[str, Surface] = {}
         self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
         self._layered: Layered | None = None
+        self._glare: Luminance | None = None
         self._blurred: tuple[float, GlassModel | None] = (0.0, None)
         self.maps_redrawn = 0
 
@@ -181,6 +183,22 @@ class ReferenceEngine:
         if self._layered is None:
             return bodies
         return bodies * (1 - self._layered.layers.coverage)[..., None]
+
+    def glare(
+        self, frame: CameraFrame, seen: Surface, luminance: Luminance, moment: Moment
+    ) -> Luminance:
+        """The picture as the observer's eye scatters it."""
+        own, word = self.prepared.glare, self.prepared.photometry
+        if own is None:
+            return luminance
+        light = np.maximum(np.nan_to_num(np.asarray(luminance.cd_m2, np.float64)), 0)
+        whole = whole_picture.scattered(light, own.plans[frame.view.name])
+        self._glare = Luminance(whole.glare, word)
+        return Luminance(whole.picture, word)
+
+    def read_glare(self, frame: CameraFrame) -> Luminance | None:
+        """What glare added to the view that was drawn last."""
+        return self._glare
 
     def encode(self, frame: CameraFrame, luminance: Luminance) -> DisplayImage:
         """8-bit codes for the screen."""

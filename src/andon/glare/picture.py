@@ -41,6 +41,7 @@ class GlareResult:
     ----------
     picture : (H, W, 3) with its glare, cd/m², or in the unit of what was given.
     glare : (H, W, 3) what glare adds to (1 − k)·L: veil, halo and needles.
+    veil : (H, W, 3) of `glare` what is scattered evenly: without halo and needles.
     found : bright sources, from the strongest to the weakest.
     numbers : veil at the gaze, TI, UGR, DGP.
     share : k, of each point's light that became veil.
@@ -50,6 +51,7 @@ class GlareResult:
 
     picture: Float
     glare: Float
+    veil: Float
     found: FoundSources
     numbers: GlareNumbers
     share: float
@@ -121,6 +123,7 @@ def glare_of_picture(
     numbers = measured(pixels.light, view, kernel, ahead, photometry)
     return GlareResult(
         picture,
+        glare,
         glare,
         found,
         numbers,

@@ -48,9 +48,9 @@ class NeedleModel:
     contrast : of the gate.
     """
 
-    number: float = 48.0
+    number: float = 80.0
     number_spread: float = 0.25
-    most: int = 128
+    most: int = 256
     illuminance_lux: float = 1.0
     size_sr: float = 5.98e-5
     background_cd_m2: float = 1.0
@@ -59,8 +59,8 @@ class NeedleModel:
     length_degrees: float = 1.2
     longest_degrees: float = 15.0
     power: float = 2.8
-    knee: float = 0.35
-    width_degrees: float = 0.05
+    knee: float = 0.3
+    width_degrees: float = 0.03
     taper: float = 0.3
     lobe_degrees: float = 25.0
     pupil_mm: float = 6.0

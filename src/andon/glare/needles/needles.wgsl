@@ -52,9 +52,9 @@ fn tent_within(across: f32) -> f32 {
   let x = dot(direction, needle.source);
   let y = dot(direction, needle.along);
   let theta = atan2(y, x);
-  // The extent of a pixel along the needle and across it.
+  // Of what is averaged along the needle, and of a pixel across it.
   let outwards = (x * needle.along - y * needle.source) / (x * x + y * y);
-  let extent = length(vec2f(dot(step_x, outwards), dot(step_y, outwards)));
+  let extent = constants.extent * length(vec2f(dot(step_x, outwards), dot(step_y, outwards)));
   let width = length(vec2f(dot(step_x, normal), dot(step_y, normal)));
   let rho = theta - needle.start;
   let ends = vec2f(rho - 0.5 * extent, rho + 0.5 * extent);

@@ -55,7 +55,7 @@ def pattern_of(seed: int, which: Which, most: int) -> Pattern:
     length, width, strength = generator.standard_normal((3, most))
     long = np.maximum(np.abs(length), SHORTEST)
     wide = np.exp(WIDTH_SPREAD * width)
-    light = long * wide * np.exp(STRENGTH_SPREAD * strength)
+    light = np.sqrt(long) * wide * np.exp(STRENGTH_SPREAD * strength)
     return Pattern(number, turn, long, wide, light / light.sum())
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.glare.needles.model import REFERENCE_NM, WAVELENGTHS_NM, NeedleModel, Needles
-from andon.glare.needles.reference import LEAST_HALF_WIDTH
+from andon.glare.needles.reference import EXTENT, LEAST_HALF_WIDTH, MARGIN
 from andon.gpu.layout import HostStruct
 from andon.spaces import View
 
@@ -45,8 +45,9 @@ NEEDLE_CONSTANTS = HostStruct(
         ("end", "f32"),  # of the profile, taken off so that it ends at 0
         ("scale", "f32"),  # 1/integral of the profile
         ("taper", "f32"),
-        ("pixel", "f32"),  # angle of the largest pixel
+        ("margin", "f32"),  # angle that a needle's light reaches beyond it
         ("least", "f32"),  # half-width of a tent in pixels
+        ("extent", "f32"),  # of the mean along a needle in pixels
     ),
 )
 
@@ -70,8 +71,9 @@ def pack_constants(model: NeedleModel, view: View, /) -> NDArray[Any]:
         end=end,
         scale=1 / whole,
         taper=model.taper,
-        pixel=pixel_radians(view),
+        margin=MARGIN * pixel_radians(view),
         least=LEAST_HALF_WIDTH,
+        extent=EXTENT,
     )
 
 
@@ -79,7 +81,7 @@ def pack_needles(
     needles: Sequence[Needles], view: View, luminance_per_unit: float, /
 ) -> NDArray[Any]:
     """(n,) `NEEDLE_RECORD` of all needles of all sources."""
-    pixel = pixel_radians(view)
+    margin = MARGIN * pixel_radians(view)
     records = np.zeros(sum(len(star) for star in needles), NEEDLE_RECORD.dtype)
     begin = 0
     for star in needles:
@@ -90,6 +92,6 @@ def pack_needles(
         part["start"], part["length"] = star.start_radians, star.length_radians
         part["light"] = star.illuminance_lux / luminance_per_unit
         part["half_width"], part["reach"] = star.half_width_radians, reach
-        part["first"] = star.start_radians - pixel
-        part["last"] = star.start_radians + reach.max(axis=-1) + pixel
+        part["first"] = star.start_radians - margin
+        part["last"] = star.start_radians + reach.max(axis=-1) + margin
     return records

@@ -7,8 +7,8 @@
     ●────┤━━━━━━━━━━━┷━━━━━━━━╸        luminance = E·profile(ρ)·tent(s)
     source            ρ  along: angle from the outline
 
-Both factors are means over a pixel: the differences of their integrals over the pixel's extent,
-so all pixels together hold a needle's light, however thin it is and wherever it lies between them.
+Both factors are means, over a pixel across and some pixels along: differences of their integrals.
+So all pixels together hold a needle's light, however thin it is and wherever it lies between them.
 """
 
 from __future__ import annotations
@@ -22,13 +22,17 @@ from numpy.typing import ArrayLike, NDArray
 from andon.glare.needles.model import REFERENCE_NM, WAVELENGTHS_NM, NeedleModel, Needles
 from andon.spaces import View
 
-__all__ = ["draw", "profile_within", "tent_within"]
+__all__ = ["EXTENT", "LEAST_HALF_WIDTH", "MARGIN", "draw", "profile_within", "tent_within"]
 
 Float = NDArray[np.float64]
 
-# No tent is narrower than this many pixels to each side: with the mean over the pixel it then
-# covers two pixels, and a needle that moves by fractions of one neither flickers nor shows steps.
-LEAST_HALF_WIDTH = 0.5
+# In pixels: no tent is narrower to each side, and light is the mean over so much along a needle.
+# With 1, and the mean over the pixel across, needles neither flicker nor show steps when they move
+# by fractions of a pixel. Along it is the foot, where all of them begin at once, that needs more:
+# with 1 px the light of a star varied by 3 % with where it lay between pixels, with 3 by 0.7 %.
+LEAST_HALF_WIDTH, EXTENT = 1.0, 3.0
+# No light is farther than this from a needle, in pixels.
+MARGIN = 1.5
 
 
 def profile_within(along: ArrayLike, model: NeedleModel, /) -> Float:
@@ -56,25 +60,25 @@ def draw(needles: Sequence[Needles], view: View, /) -> Float:
     """(H, W, 3) cd/m² of needles alone, pixel by pixel the mean over it."""
     directions = view.directions()
     steps = _steps(view, directions)
-    largest = float(np.max(np.linalg.norm(steps, axis=-1)))
+    margin = MARGIN * float(np.max(np.linalg.norm(steps, axis=(-2, -1))))
     picture = np.zeros((*view.shape, 3))
     for star in needles:
-        inside = directions @ star.direction > np.cos(min(np.pi, star.reach_radians + largest))
+        inside = directions @ star.direction > np.cos(min(np.pi, star.reach_radians + margin))
         seen, footprint = directions[inside], steps[inside]
         light = np.zeros((len(seen), 3))
         for index in range(len(star)):
-            near = _near(star, index, seen, largest)
+            near = _near(star, index, seen, margin)
             light[near] += _needle(star, index, seen[near], footprint[near])
         picture[inside] += light
     return picture
 
 
-def _near(star: Needles, index: int, directions: Float, pixel: float) -> NDArray[np.int64]:
+def _near(star: Needles, index: int, directions: Float, margin: float) -> NDArray[np.int64]:
     """Indices of the `directions` (n, 3) that may hold light of one needle."""
     along = star.along[index]
     across = np.abs(directions @ np.cross(star.direction, along))
     return np.flatnonzero(
-        (across < star.half_width_radians[index] + pixel) & (directions @ along > -pixel)
+        (across < star.half_width_radians[index] + margin) & (directions @ along > -margin)
     )
 
 
@@ -83,9 +87,9 @@ def _needle(star: Needles, index: int, directions: Float, steps: Float) -> Float
     along = star.along[index]
     normal = np.cross(star.direction, along)
     x, y, s = directions @ star.direction, directions @ along, directions @ normal
-    # How much θ and s change over a pixel: its extent along the needle and across it.
+    # How much θ changes over what is averaged, and s over a pixel.
     outwards = (x[:, None] * along - y[:, None] * star.direction) / (x**2 + y**2)[:, None]
-    length = np.linalg.norm(np.einsum("nka,na->nk", steps, outwards), axis=-1)
+    length = EXTENT * np.linalg.norm(np.einsum("nka,na->nk", steps, outwards), axis=-1)
     width = np.linalg.norm(steps @ normal, axis=-1)
     rho = np.arctan2(y, x) - star.start_radians[index]
     reach = star.length_radians[index] * WAVELENGTHS_NM / REFERENCE_NM

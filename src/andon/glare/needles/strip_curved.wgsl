@@ -11,7 +11,7 @@ fn strip_corner(needle: NeedleRecord, vertex: u32) -> StripCorner {
   let step = (needle.last - needle.first) / f32(PARTS);
   let theta = needle.first + step * (f32(part) + 0.5);
   let middle = cos(theta) * needle.source + sin(theta) * needle.along;
-  let across = needle.half_width + constants.pixel;
+  let across = needle.half_width + constants.margin;
   let box = cap_box(middle, length(vec2f(0.5 * step, across)) + 1e-5);
   // Boxes overlap; each pixel belongs to one part of the needle.
   let own = needle.first + step * vec2f(f32(part), f32(part + 1u));

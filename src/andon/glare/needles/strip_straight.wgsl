@@ -14,7 +14,7 @@ fn strip_corner(needle: NeedleRecord, vertex: u32) -> StripCorner {
   let corner = quad_corner(vertex);
   let theta = mix(needle.first, needle.last, corner.x);
   let normal = cross(needle.source, needle.along);
-  let side = (2.0 * corner.y - 1.0) * tan(needle.half_width + constants.pixel);
+  let side = (2.0 * corner.y - 1.0) * tan(needle.half_width + constants.margin);
   let direction = cos(theta) * needle.source + sin(theta) * needle.along + side * normal;
   return StripCorner(clip_of_direction(direction), vec2f(-4.0, 4.0));
 }

@@ -12,6 +12,7 @@ from andon.composite.model import Ambient
 from andon.display.model import Exposure
 from andon.engines.checks import check_lamps
 from andon.engines.glass import SceneGlass, glass_of
+from andon.engines.highlights import SceneHighlights, highlights_of
 from andon.engines.moment import Moment
 from andon.engines.photographless import (
     ambient_without_photograph,
@@ -83,6 +84,7 @@ class Prepared:
     probes : light that virtual objects stand in instead of E0, or None.
     glass : transparent bodies and what the eyes are focused on, or None.
     balls : those of them in whose shadow and caustic surfaces stand.
+    highlights : how virtual objects mirror, or None: nothing does.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -98,6 +100,7 @@ class Prepared:
     probes: SceneProbes | None = None
     glass: SceneGlass | None = None
     balls: tuple[GlassBall, ...] = ()
+    highlights: SceneHighlights | None = None
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
@@ -159,6 +162,7 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         probes=probes,
         glass=glass,
         balls=() if glass is None else glass.balls,
+        highlights=highlights_of(scene, surface),
     )
 
 

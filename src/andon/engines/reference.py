@@ -229,8 +229,9 @@ class ReferenceEngine:
             return luminance
         light = np.maximum(np.nan_to_num(np.asarray(luminance.cd_m2, np.float64)), 0)
         whole = whole_picture.scattered(light, own.plans[frame.view.name])
-        self._glare = Luminance(whole.glare, word)
-        return Luminance(whole.picture, word)
+        around = own.around_sources(light, frame.view)
+        self._glare = Luminance(whole.glare + around, word)
+        return Luminance(whole.picture + around, word)
 
     def read_glare(self, frame: CameraFrame) -> Luminance | None:
         """What glare added to the view that was drawn last."""

@@ -35,8 +35,9 @@ def main(out: Path) -> None:
         layer = np.ones_like(light)
         for _ in range(count):
             _leaf(layer, draws, length * FINER)
+        if length < 40:
+            _boughs(light, draws)
         light *= cv2.GaussianBlur(layer, (0, 0), blur * FINER)
-        _branches(light, draws, length * FINER)
     small = cv2.resize(light, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
     # Leaves are lit from the side that is seen as well, by what is around.
     small += 0.008 * np.array([0.7, 1.0, 0.5])
@@ -80,21 +81,24 @@ def _leaf(layer: np.ndarray, draws: np.random.Generator, length: float) -> None:
     layer[y0:y1, x0:x1] *= 1 - shape[..., None] * (1 - through)
 
 
-def _branches(light: np.ndarray, draws: np.random.Generator, length: float) -> None:
-    """Darkens `light` along a few boughs, which are thicker in nearer layers."""
+def _boughs(light: np.ndarray, draws: np.random.Generator) -> None:
+    """Darkens `light` along a few boughs behind the leaves, each thinner towards its end."""
     height, width = light.shape[:2]
     wood = np.zeros((height, width), np.float32)
-    for _ in range(3):
-        t = np.linspace(0, 1, 60)[:, None]
-        start = np.array([draws.uniform(-0.1, 0.7) * width, draws.choice([-0.05, 1.05]) * height])
-        end = draws.uniform(0.1, 1.1, 2) * (width, height)
-        middle = (start + end) / 2 + draws.normal(0, 0.12 * width, 2)
-        bough = (1 - t) ** 2 * start + 2 * t * (1 - t) * middle + t**2 * end
-        bough += np.cumsum(draws.normal(0, 0.006 * length, bough.shape), axis=0)
-        for number in range(59):
-            thick = max(1, round(0.13 * length * (1 - 0.8 * number / 59)))
+    for start, middle, end, thick in (
+        ((-0.02, 0.9), (0.3, 0.62), (0.78, 0.16), 15),
+        ((0.36, 0.6), (0.5, 0.62), (0.72, 0.5), 8),
+        ((0.55, 0.42), (0.56, 0.3), (0.5, 0.02), 6),
+        ((1.02, 0.75), (0.85, 0.72), (0.6, 0.95), 9),
+    ):
+        t = np.linspace(0, 1, 80)[:, None]
+        bough = (1 - t) ** 2 * np.array(start) + 2 * t * (1 - t) * np.array(middle)
+        bough = (bough + t**2 * np.array(end)) * (width, height)
+        bough += np.cumsum(draws.normal(0, 0.9 * FINER, bough.shape), axis=0)
+        for number in range(79):
             pair = _fixed(bough[number : number + 2], 0, 0)
-            cv2.polylines(wood, [pair], False, 1.0, thick, cv2.LINE_AA, 4)
+            pixels = max(1, round(thick * FINER * (1 - 0.75 * number / 79)))
+            cv2.polylines(wood, [pair], False, 1.0, pixels, cv2.LINE_AA, 4)
     light *= 1 - 0.985 * wood[..., None]
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from andon.cli import glare, glare_psf
+from andon.cli import glare, glare_komorebi, glare_psf
 
 __all__ = ["PICTURE", "glare_app"]
 
@@ -39,3 +39,4 @@ glare_app = typer.Typer(
 # In the order of ``andon glare --help``.
 glare_app.command(PICTURE)(glare.picture)
 glare_app.command("psf")(glare_psf.psf)
+glare_app.command("komorebi")(glare_komorebi.komorebi)

@@ -22,7 +22,8 @@ Instead of what
     A video of leaves has one eye, one exposure and no light beyond white. Leaves that move as
     geometry need a model of the tree and of the wind, and end at the same statistics.
 
-Sources: the glare paper, equations 9 to 11; Pomeau & Manneville 1980; Otsu 1979; Monsi & Saeki 1953.
+Sources: the glare paper, equations 9 to 11; Pomeau & Manneville 1980; Otsu 1979 (threshold);
+Monsi & Saeki 1953 (light through leaves).
 """
 
 from __future__ import annotations

@@ -76,16 +76,21 @@ def canopy_of_mask(is_open: NDArray[np.bool_], view: View, /, *, most: int = 500
 
 
 def canopy_of_picture(
-    luminance_cd_m2: NDArray[np.float64], view: View, /, *, most: int = 40
+    luminance_cd_m2: NDArray[np.float64],
+    view: View,
+    /,
+    *,
+    most: int = 40,
+    sun: Float | None = None,
 ) -> Canopy:
     """Gaps where bright sky shows between dark leaves of a picture (H, W, 3), finite and ≥ 0.
 
-    Of all places where it does so in spots, the one with most of them is where the sun is; the
-    `most` gaps nearest to it are those that flicker, the sky elsewhere stays. See `select`.
+    The `most` of them nearest to the sun flicker, the sky elsewhere stays. The `sun` is in the
+    direction (3,), or, None, where such spots are densest. See `select`.
     Raises `InputError` where there are none, or for a picture of another size than the view.
     """
     _check(np.shape(luminance_cd_m2)[:2], view)
-    labels = among_leaves(luminance_cd_m2, view, most)
+    labels = among_leaves(luminance_cd_m2, view, most, sun)
     return _canopy(behind_gaps(luminance_cd_m2, labels > 0), labels, view)
 
 

@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.glare.gate import gate
 from andon.glare.kernel import Kernel
+from andon.glare.komorebi.canopy import Canopy
 from andon.glare.komorebi.model import Komorebi
 from andon.glare.model import Source
-from andon.glare.needles import NeedleModel, needles_of
+from andon.glare.needles import needles_of
 from andon.glare.needles.model import Needles
 from andon.glare.needles.reference import draw
 from andon.glare.sources.find import background_luminance
@@ -22,9 +22,18 @@ from andon.observer.spread.family import spread_function
 from andon.observer.spread.model import Eye
 from andon.quantities import photometric
 
-__all__ = ["Seen"]
+__all__ = ["Seen", "ambient_of"]
 
 Float = NDArray[np.float64]
+
+# Of the picture's pixels this share is darker than the sky that shows between leaves.
+SKY_PERCENTILE = 99.5
+
+
+def ambient_of(canopy: Canopy, /) -> float:
+    """What the eye is adapted to, cd/m²: the mean of the leaves, without what is very bright."""
+    light = np.asarray(photometric(canopy.leaves_cd_m2))
+    return background_luminance(light, canopy.view.solid_angles())
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,11 +55,14 @@ class Seen:
 
     @cached_property
     def ambient_cd_m2(self) -> float:
-        """What the eye is adapted to: the mean of the leaves, without what is very bright there."""
-        canopy = self.komorebi.canopy
-        return background_luminance(
-            np.asarray(photometric(canopy.leaves_cd_m2)), canopy.view.solid_angles()
-        )
+        """See `ambient_of`."""
+        return ambient_of(self.komorebi.canopy)
+
+    @property
+    def units_per_cd_m2(self) -> float:
+        """Exposure under which the sky between the leaves is just white."""
+        light = np.asarray(photometric(self.komorebi.canopy.leaves_cd_m2))
+        return float(1 / max(np.percentile(light, SKY_PERCENTILE), 1e-30))
 
     @cached_property
     def _plan(self) -> WholePlan:

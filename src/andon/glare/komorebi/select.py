@@ -44,8 +44,13 @@ def chosen(labels: Labels, solid_angles_sr: Float, most: int, /) -> Labels:
     return _kept(labels, np.sort(np.argsort(-area, kind="stable")[: min(most, len(area) - 1)]))
 
 
-def among_leaves(luminance_cd_m2: Float, view: View, most: int, /) -> Labels:
-    """(H, W) 0, or 1 + the number of the gap: the `most` nearest to where gaps are densest."""
+def among_leaves(
+    luminance_cd_m2: Float, view: View, most: int, sun: Float | None = None, /
+) -> Labels:
+    """(H, W) 0, or 1 + the number of the gap: the `most` nearest to the `sun` (3,).
+
+    None: it is where gaps are densest.
+    """
     import cv2
 
     if most < 1:
@@ -64,20 +69,23 @@ def among_leaves(luminance_cd_m2: Float, view: View, most: int, /) -> Labels:
     labels = _apart(found.labels, wide > 0)
     most_px = np.pi * (np.radians(LARGEST_DEGREES) / pixel / 2) ** 2
     labels = np.where(np.append(0, found.pixels)[labels] > most_px, 0, labels)
-    near = cv2.GaussianBlur(
-        np.asarray(labels > 0, np.float32), (0, 0), np.radians(AROUND_DEGREES) / pixel
-    )
-    middle = np.array(np.unravel_index(int(np.argmax(near)), near.shape))[::-1]
-    off = np.linalg.norm(found.middles - middle, axis=1)
+    if sun is None:
+        near = cv2.GaussianBlur(
+            np.asarray(labels > 0, np.float32), (0, 0), np.radians(AROUND_DEGREES) / pixel
+        )
+        sun = view.directions().reshape(-1, 3)[int(np.argmax(near))]
+    x, y = np.minimum(np.rint(found.middles).astype(int), np.array(view.shape[::-1]) - 1).T
+    towards = view.directions()[y, x]
+    off = np.linalg.norm(towards - sun, axis=1)
     off[np.setdiff1d(np.arange(len(off)), np.unique(labels)[1:] - 1)] = np.inf
     order = np.argsort(off, kind="stable")
     order = order[np.isfinite(off[order])]
-    taken = _spread(found.middles[order], np.radians(APART_DEGREES) / pixel, most)
+    taken = _spread(towards[order], np.radians(APART_DEGREES), most)
     return _kept(labels, np.sort(order[taken]) + 1)
 
 
 def _spread(places: Float, apart: float, most: int) -> list[int]:
-    """Numbers of the first `most` places (n, 2) that are `apart` from those before them."""
+    """Numbers of the first `most` directions (n, 3) that are `apart` from those before them."""
     taken: list[int] = []
     for number, place in enumerate(places):
         if len(taken) == most:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,16 +25,20 @@ class Cleaned:
     ----------
     light : (H, W, 3) float64, finite, ≥ 0.
     nan, infinite, negative : pixels with such a channel; the channel became 0.
+    outside : pixels that show nothing.
     """
 
     light: NDArray[np.float64]
     nan: int = 0
     infinite: int = 0
     negative: int = 0
+    outside: int = 0
 
 
-def cleaned(luminance_cd_m2: NDArray[np.floating], view: View, /) -> Cleaned:
-    """The picture (H, W, 3) with NaN, ±Inf and negative values as 0.
+def cleaned(
+    luminance_cd_m2: NDArray[np.floating[Any]], view: View, shows: NDArray[np.bool_] | None, /
+) -> Cleaned:
+    """The picture (H, W, 3) with NaN, ±Inf and negative values as 0, and so where nothing shows.
 
     Raises
     ------
@@ -55,7 +60,10 @@ def cleaned(luminance_cd_m2: NDArray[np.floating], view: View, /) -> Cleaned:
             remedy="scale the picture down: the veil has no details finer than 0.1°",
         )
     light = np.array(luminance_cd_m2, np.float64)
+    if shows is not None:
+        light[~shows] = 0
     nan, infinite, negative = np.isnan(light), np.isinf(light), light < 0
     light[nan | infinite | negative] = 0
     counts = [int(np.count_nonzero(bad.any(axis=-1))) for bad in (nan, infinite, negative)]
-    return Cleaned(light, *counts)
+    outside = 0 if shows is None else int(np.count_nonzero(~shows))
+    return Cleaned(light, counts[0], counts[1], counts[2], outside)

@@ -41,6 +41,7 @@ class GlareResult:
     ----------
     picture : (H, W, 3) with its glare, cd/m², or in the unit of what was given.
     glare : (H, W, 3) what glare adds to (1 − k)·L: veil, halo and needles.
+    veil : (H, W, 3) of `glare` what is scattered evenly: without halo and needles.
     found : bright sources, from the strongest to the weakest.
     numbers : veil at the gaze, TI, UGR, DGP.
     share : k, of each point's light that became veil.
@@ -50,6 +51,7 @@ class GlareResult:
 
     picture: Float
     glare: Float
+    veil: Float
     found: FoundSources
     numbers: GlareNumbers
     share: float
@@ -79,6 +81,7 @@ def glare_of_picture(
     gaze: NDArray[np.float64] | None = None,
     photometry: Photometry = "absolute",
     clipped: NDArray[np.bool_] | None = None,
+    shows: NDArray[np.bool_] | None = None,
 ) -> GlareResult:
     """The picture as `eye` sees it, and numbers of its glare.
 
@@ -94,6 +97,8 @@ def glare_of_picture(
     gaze : (3,) camera frame, where the numbers are taken; None: straight ahead.
     photometry : ``relative`` where the picture is not calibrated.
     clipped : (H, W) bool, pixels at the white of the camera.
+    shows : (H, W) bool, where the picture shows something: False outside the circle of a fish-eye,
+        which counts as dark and stays so. None: everywhere.
 
     Returns
     -------
@@ -106,16 +111,19 @@ def glare_of_picture(
         for a picture of another size than the view, without pixels or with more than 2²⁵, and
         for a model that is not known.
     """
-    pixels = cleaned(luminance_cd_m2, view)
+    pixels = cleaned(luminance_cd_m2, view, shows)
     eye = Eye() if eye is None else eye
     spread = _spread(model, eye)
     kernel = Kernel(spread)
     ahead = AHEAD if gaze is None else _unit(gaze)
     found = find_sources(pixels.light, view, clipped=clipped)
     picture, glare = _scattered(pixels.light, view, kernel)
+    if shows is not None:
+        picture, glare = (np.where(shows[..., None], part, 0) for part in (picture, glare))
     numbers = measured(pixels.light, view, kernel, ahead, photometry)
     return GlareResult(
         picture,
+        glare,
         glare,
         found,
         numbers,

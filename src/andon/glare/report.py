@@ -53,6 +53,7 @@ def report(
             "nan": result.pixels.nan,
             "infinite": result.pixels.infinite,
             "negative": result.pixels.negative,
+            "outside": result.pixels.outside,
         },
         "view": _view(result),
         "observer": asdict(result.eye),

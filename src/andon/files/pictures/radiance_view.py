@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.spaces import View
 
-__all__ = ["RadianceView", "from_hemispherical", "radiance_view"]
+__all__ = ["RadianceView", "from_hemispherical", "line_of_view", "radiance_view"]
 
 # Radiance's own defaults.
 ANGLES = {"-vh": 45.0, "-vv": 45.0, "-vs": 0.0, "-vl": 0.0}
@@ -79,6 +79,20 @@ def radiance_view(line: str, width: int, height: int, /, *, file: str = "") -> R
     focal = [_focal(kind, side, angle) for side, angle in ((width, across), (height, up))]
     name = "pinhole" if kind == "v" else "fisheye"
     return RadianceView(View(name, width, height, *focal, cx, cy), hemispherical=kind == "h")
+
+
+def line_of_view(view: View, /) -> str | None:
+    """What a VIEW line says of `view`, so that `radiance_view` reads it back; None for latlong."""
+    if view.projection == "latlong":
+        return None
+    half = [view.width / 2 / view.fx, view.height / 2 / view.fy]
+    if view.projection == "pinhole":
+        half = [math.atan(part) for part in half]
+    across, up = (math.degrees(2 * part) for part in half)
+    right = ((view.width - 1) / 2 - view.cx) / view.width
+    lift = (view.cy - (view.height - 1) / 2) / view.height
+    kind = "-vtv" if view.projection == "pinhole" else "-vta"
+    return f"{kind} -vh {across:.9g} -vv {up:.9g} -vs {right:.9g} -vl {lift:.9g}"
 
 
 def _focal(kind: str, side: int, degrees: float) -> float:

@@ -4,7 +4,7 @@
 number     says                                           source
 ========== ============================================== ===================================
 veil       luminance that lies over what is looked at     the spread function
-TI         how much more contrast is needed because of it CIE 31:1976, EN 13201
+TI         how much more contrast is needed because of it CIE 31:1976
 UGR        discomfort from lamps indoors                  CIE 117:1995
 DGP        share of people disturbed by daylight          Wienold & Christoffersen 2006
 ========== ============================================== ===================================

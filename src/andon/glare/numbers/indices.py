@@ -21,9 +21,9 @@ Float = NDArray[np.float64]
 
 # The exponent of TI = 65·L_v/L_av^0.8 was found for road luminances up to this (CIE 31:1976).
 TI_MOST_CD_M2 = 5.0
-# Sources that UGR was made for (CIE 117:1995); smaller and larger ones have their own (CIE 147).
+# Sources that UGR was made for (CIE 117:1995); others have formulas of their own.
 UGR_SOLID_ANGLES_SR = (3e-4, 0.1)
-# Of Wienold & Christoffersen 2006: probabilities, and the illuminance at the eye.
+# Probabilities, and the illuminance at the eye, of the study (Wienold & Christoffersen 2006).
 DGP_RANGE, DGP_LEAST_LUX = (0.2, 0.8), 380.0
 # Beyond these evalglare goes no further, and the tables behind the formulas end.
 LARGEST_INDEX, LARGEST_SLOPE = 16.0, 3.0

@@ -19,16 +19,19 @@ from andon.glare.numbers.indices import (
     unified_glare_rating,
 )
 from andon.glare.numbers.veil import veil_towards, vertical_illuminance
-from andon.glare.sources.find import FoundSources, background_luminance, find_sources
+from andon.glare.sources.find import background_luminance, find_sources
 from andon.quantities import Photometry, photometric
 from andon.spaces import View
 
-__all__ = ["GlareNumbers", "Validity", "measured"]
+__all__ = ["Discomfort", "GlareNumbers", "Validity", "measured"]
 
 Float = NDArray[np.float64]
 
-# evalglare's own settings: bright is 5 × the mean luminance, sources within 0.2 rad are one.
-DISCOMFORT_CONTRAST, MERGE_DEGREES, MOST_SOURCES = 5.0, float(np.degrees(0.2)), 200
+# evalglare's settings: what is brighter than 2000 cd/m² is a source, those within 0.2 rad are one,
+# but peaks of more than 50,000 cd/m² are taken out of them. Of relative pictures bright is 5 times
+# the mean, its older setting (Wienold & Christoffersen 2006), and there are no peaks.
+SOURCE_CD_M2, PEAK_CD_M2, RELATIVE_CONTRAST = 2000.0, 50000.0, 5.0
+MERGE_DEGREES, MOST_SOURCES = float(np.degrees(0.2)), 200
 UP = np.array([0.0, -1.0, 0.0])
 # Light from beside a picture is missing in the sums; a half-space and some tolerance has it all.
 WHOLE_FIELD_SR = 2 * np.pi * 0.9
@@ -53,6 +56,26 @@ class Validity:
 
 
 @dataclass(frozen=True, eq=False)
+class Discomfort:
+    """Sources as the indices of discomfort take them.
+
+    Attributes
+    ----------
+    directions : (n, 3) unit.
+    solid_angle_sr, cd_m2, index : (n,) size, mean luminance, position index.
+    direct_lux : their light on a plane that faces the gaze.
+    threshold_cd_m2 : what counted as bright.
+    """
+
+    directions: Float
+    solid_angle_sr: Float
+    cd_m2: Float
+    index: Float
+    direct_lux: float
+    threshold_cd_m2: float
+
+
+@dataclass(frozen=True, eq=False)
 class GlareNumbers:
     """What was measured.
 
@@ -63,7 +86,7 @@ class GlareNumbers:
     vertical_lux : at the eye, of all that the picture shows.
     adaptation_cd_m2 : mean luminance without what is 40 times brighter.
     background_cd_m2 : L_b of UGR: light at the eye without the discomfort sources, over π.
-    discomfort : the sources of UGR and DGP.
+    discomfort : the sources of UGR and DGP: one more row for each peak.
     ti_percent, ugr, dgp : None where they cannot be computed.
     validity : by the name of the number.
     """
@@ -73,7 +96,7 @@ class GlareNumbers:
     vertical_lux: float
     adaptation_cd_m2: float
     background_cd_m2: float
-    discomfort: FoundSources
+    discomfort: Discomfort
     ti_percent: float | None
     ugr: float | None
     dgp: float | None
@@ -97,34 +120,46 @@ def measured(
     adaptation = background_luminance(bright[before], solid[before]) if before.any() else 0.0
     mean = float(np.average(bright[before], weights=solid[before])) if before.any() else 0.0
     seen = np.where(before[..., None], light, 0)
-    found = find_sources(
-        seen,
-        view,
-        threshold_cd_m2=DISCOMFORT_CONTRAST * mean,
-        merge_degrees=MERGE_DEGREES,
-        most=MOST_SOURCES,
-    )
-    luminance, index, direct = _of_sources(found, gaze)
-    background = max(vertical - direct, 0.0) / np.pi
-    omega = found.solid_angle_sr
+    discomfort = _discomfort(seen, view, gaze, photometry, RELATIVE_CONTRAST * mean)
+    omega, luminance, index = discomfort.solid_angle_sr, discomfort.cd_m2, discomfort.index
+    background = max(vertical - discomfort.direct_lux, 0.0) / np.pi
     veil_value = float(photometric(veil))
     ti = threshold_increment_percent(veil_value, adaptation) if adaptation > 0 else None
     ugr = unified_glare_rating(luminance, omega, index, background) if background > 0 else None
     dgp = daylight_glare_probability(luminance, omega, index, vertical) if vertical > 0 else None
     facts = _Facts(photometry, float(solid[before].sum()), adaptation, omega, vertical, dgp, kernel)
     return GlareNumbers(
-        gaze, veil, vertical, adaptation, background, found, ti, ugr, dgp, _validity(facts)
+        gaze, veil, vertical, adaptation, background, discomfort, ti, ugr, dgp, _validity(facts)
     )
 
 
-def _of_sources(found: FoundSources, gaze: Float) -> tuple[Float, Float, float]:
-    """(n,) luminances and position indices, and their light on a plane that faces the gaze."""
-    if not found.sources:
-        return np.zeros(0), np.ones(0), 0.0
-    directions = np.array([source.direction for source in found.sources])
-    lux = photometric(np.array([source.illuminance_lux for source in found.sources]))
-    direct = float(np.maximum(directions @ gaze, 0) @ lux)
-    return photometric(found.luminance_cd_m2), position_index(directions, gaze, UP), direct
+def _discomfort(
+    seen: Float, view: View, gaze: Float, photometry: Photometry, relative: float
+) -> Discomfort:
+    """Sources in `seen` (H, W, 3); `relative` is the threshold of pictures without calibration."""
+    absolute = photometry == "absolute"
+    threshold = SOURCE_CD_M2 if absolute else relative
+    peak = (photometric(seen) > PEAK_CD_M2)[..., None] if absolute else np.zeros((), bool)
+    parts = (
+        (np.where(peak, 0, seen), threshold, MERGE_DEGREES),
+        (np.where(peak, seen, 0), max(threshold, PEAK_CD_M2), 0.0),
+    )
+    found = [
+        find_sources(light, view, threshold_cd_m2=at, merge_degrees=merge, most=MOST_SOURCES)
+        for light, at, merge in (parts if np.any(peak) else parts[:1])
+    ]
+    directions = np.array([s.direction for part in found for s in part.sources]).reshape(-1, 3)
+    lux = np.array([s.illuminance_lux for part in found for s in part.sources]).reshape(-1, 3)
+    omega = np.concatenate([part.solid_angle_sr for part in found])
+    cosine = np.maximum(directions @ gaze, 0)
+    return Discomfort(
+        directions,
+        omega,
+        photometric(lux) / omega,
+        position_index(directions, gaze, UP),
+        float(cosine @ photometric(lux)),
+        threshold,
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,23 +15,23 @@ Specks
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.glare.model import Outline, Source
+from andon.glare.model import Source
+from andon.glare.sources.moments import Moments, pixel_moments, sources_of
+from andon.glare.sources.regions import connected_regions
 from andon.quantities import photometric
-from andon.spaces import View, perpendicular
+from andon.spaces import View
 
 __all__ = ["HIGHLIGHT_CONTRAST", "FoundSources", "background_luminance", "find_sources"]
 
 Float = NDArray[np.float64]
 
 HIGHLIGHT_CONTRAST = 40.0
-# Corners of the outline's table; an ellipse of axes 8:1 is then within 0.5 % of its radii.
-CORNERS = 64
 # The mean without sources falls from round to round and the sources grow; real pictures take 3…12.
 ROUNDS = 40
 
@@ -101,31 +101,30 @@ def find_sources(
     background = background_luminance(bright, solid)
     threshold = HIGHLIGHT_CONTRAST * background if threshold_cd_m2 is None else threshold_cd_m2
     threshold = max(threshold, at_least_cd_m2, np.finfo(float).tiny)
-    regions, count = _regions(bright > threshold, view)
+    regions, count = connected_regions(bright > threshold, view)
     inside = np.flatnonzero(regions.ravel())
-    pixels = _Pixels(
-        inside,
-        regions.ravel()[inside] - 1,
+    region = regions.ravel()[inside] - 1
+    omega = solid.ravel()[inside]
+    moments = pixel_moments(
         view.directions().reshape(-1, 3)[inside],
-        solid.ravel()[inside],
         light.reshape(-1, 3)[inside],
+        omega,
+        region,
+        count,
     )
-    group, kept = _merged(pixels, count, np.radians(merge_degrees), most)
+    group, kept = _groups(moments, np.radians(merge_degrees), most)
     labels = np.zeros(view.shape, np.int32)
-    labels.ravel()[inside] = group[pixels.region] + 1
-    flags = np.zeros(kept, bool) if clipped is None else _flags(labels, clipped, kept)
-    of_group = group[pixels.region]
-    sources = tuple(_source(pixels, of_group == i, f"found[{i}]", flags[i]) for i in range(kept))
-    power = photometric(pixels.light) * pixels.solid
+    labels.ravel()[inside] = group[region] + 1
+    power = photometric(moments.illuminance_lux)
     return FoundSources(
-        sources,
-        np.bincount(of_group[of_group >= 0], pixels.solid[of_group >= 0], kept),
+        _named(sources_of(moments.merged(group, kept)), labels, clipped),
+        np.bincount(labels.ravel()[inside], omega, kept + 1)[1:].astype(np.float64),
         labels,
         float(threshold),
         float(background),
         count,
         int(np.count_nonzero(group < 0)),
-        float(power[of_group < 0].sum() / power.sum()) if len(power) else 0.0,
+        float(power[group < 0].sum() / power.sum()) if count else 0.0,
     )
 
 
@@ -145,17 +144,6 @@ def background_luminance(
     return mean
 
 
-@dataclass(frozen=True, eq=False)
-class _Pixels:
-    """The bright ones: place (n,), region from 0 (n,), direction (n, 3), sr (n,), cd/m² (n, 3)."""
-
-    place: NDArray[np.intp]
-    region: NDArray[np.int32]
-    direction: Float
-    solid: Float
-    light: Float
-
-
 def _checked(luminance: NDArray[np.floating], view: View) -> Float:
     light = np.asarray(luminance, np.float64)
     if light.shape != (*view.shape, 3):
@@ -168,95 +156,36 @@ def _checked(luminance: NDArray[np.floating], view: View) -> Float:
     return light
 
 
-def _regions(bright: NDArray[np.bool_], view: View) -> tuple[NDArray[np.int32], int]:
-    """(H, W) numbers from 1 of regions that touch, also diagonally, and how many there are."""
-    import cv2
+def _groups(moments: Moments, within: float, most: int) -> tuple[NDArray[np.int64], int]:
+    """(regions,) which kept source each belongs to, −1: none; and how many are kept.
 
-    count, found = cv2.connectedComponents(bright.astype(np.uint8), connectivity=8)
-    labels = np.asarray(found, np.int32)
-    if view.projection != "latlong":
-        return labels, count - 1
-    pairs: list[tuple[int, int]] = []
-    for shift in (-1, 0, 1):
-        pairs += zip(labels[:, 0].tolist(), np.roll(labels[:, -1], shift).tolist(), strict=True)
-    # The pixels of the first row all touch at the pole, and those of the last row at the other.
-    for row in (labels[0], labels[-1]):
-        lit = row[row > 0].tolist()
-        pairs += [(lit[0], other) for other in lit[1:]]
-    return _united(labels, count, pairs)
-
-
-def _united(
-    labels: NDArray[np.int32], count: int, pairs: list[tuple[int, int]]
-) -> tuple[NDArray[np.int32], int]:
-    """The labels with the pairs made one, numbered anew without gaps."""
-    parent = list(range(count))
-
-    def root(label: int) -> int:
-        while parent[label] != label:
-            parent[label] = parent[parent[label]]
-            label = parent[label]
-        return label
-
-    for first, second in pairs:
-        if first > 0 and second > 0:
-            parent[max(root(first), root(second))] = min(root(first), root(second))
-    roots = np.array([root(label) for label in range(count)])
-    names, numbers = np.unique(roots, return_inverse=True)
-    return numbers.astype(np.int32)[labels], len(names) - 1
-
-
-def _merged(pixels: _Pixels, count: int, within: float, most: int) -> tuple[NDArray[np.int64], int]:
-    """(count,) which kept source each region belongs to, −1: none; and how many are kept."""
-    group = np.full(count, -1)
-    if count == 0:
-        return group, 0
-    power = photometric(pixels.light) * pixels.solid
-    total = np.bincount(pixels.region, power, count)
-    middle = np.stack(
-        [np.bincount(pixels.region, power * pixels.direction[:, i], count) for i in range(3)], -1
-    )
-    middle /= np.maximum(np.linalg.norm(middle, axis=1, keepdims=True), 1e-300)
-    for kept in range(most):
-        free = group < 0
-        if not free.any():
-            return group, kept
-        strongest = int(np.argmax(np.where(free, total, -1.0)))
+    Kept sources are in the order of their illuminance.
+    """
+    total = photometric(moments.illuminance_lux)
+    middle = moments.first / np.maximum(np.linalg.norm(moments.first, axis=1), 1e-300)[:, None]
+    group = np.full(len(moments), -1)
+    kept = 0
+    while kept < most and (group < 0).any():
+        strongest = int(np.argmax(np.where(group < 0, total, -1.0)))
         near = np.linalg.norm(middle - middle[strongest], axis=1) <= 2 * np.sin(within / 2)
         near[strongest] = True
-        group[free & near] = kept
-    return group, most
+        group[(group < 0) & near] = kept
+        kept += 1
+    power = np.bincount(group[group >= 0], total[group >= 0], kept)
+    place = np.empty(kept + 1, np.int64)
+    place[np.argsort(-power, kind="stable")] = np.arange(kept)
+    place[-1] = -1
+    return place[group], kept
 
 
-def _flags(labels: NDArray[np.int32], clipped: NDArray[np.bool_], kept: int) -> NDArray[np.bool_]:
-    return np.bincount(labels[clipped], minlength=kept + 1)[1:] > 0
-
-
-def _source(pixels: _Pixels, chosen: NDArray[np.bool_], name: str, clipped: bool) -> Source:
-    """One source from its pixels.
-
-    The outline is the ellipse of the second moments of the light, scaled to the solid angle of
-    the pixels, so that E/ω is their mean luminance.
-    """
-    direction, solid = pixels.direction[chosen], pixels.solid[chosen]
-    light = pixels.light[chosen]
-    power = photometric(light) * solid
-    centre = power @ direction
-    centre /= np.linalg.norm(centre)
-    right, down = perpendicular(centre)
-    place = direction @ np.stack([right, down], axis=1)
-    weight = power / power.sum()
-    # A pixel is no point: its own second moment is ω/12 along either axis.
-    moments = (weight[:, None] * place).T @ place + np.eye(2) * (weight @ solid) / 12
-    moments -= np.outer(weight @ place, weight @ place)
-    variances, axes = np.linalg.eigh(moments)
-    long, short = np.sqrt(np.maximum(variances[::-1], 1e-20))
-    major = axes[0, 1] * right + axes[1, 1] * down
-    scale = np.sqrt(solid.sum() / (np.pi * long * short))
-    outline = Outline(_ellipse(min(long * scale, 1.5), min(short * scale, 1.5)), "ellipse")
-    return Source(centre, solid @ light, outline, right=major, name=name, clipped=bool(clipped))
-
-
-def _ellipse(long: float, short: float) -> Float:
-    phi = 2 * np.pi * np.arange(CORNERS) / CORNERS
-    return long * short / np.hypot(short * np.cos(phi), long * np.sin(phi))
+def _named(
+    sources: list[Source], labels: NDArray[np.int32], clipped: NDArray[np.bool_] | None
+) -> tuple[Source, ...]:
+    """The sources with their numbers as names, and flagged where a pixel of theirs is clipped."""
+    flags = np.zeros(len(sources) + 1, bool)
+    if clipped is not None:
+        flags[labels[clipped]] = True
+    return tuple(
+        replace(source, name=f"found[{number}]", clipped=bool(flags[number + 1]))
+        for number, source in enumerate(sources)
+    )

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.glare.whole_picture.charts import MARGIN, Chart, block_directions, block_shape
+from andon.glare.whole_picture.charts import MARGIN, Chart, block_directions
 from andon.glare.whole_picture.plan import WholePlan
 from andon.glare.whole_picture.splines import spline_weights, taps
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from andon.display.false_colour import contact_sheet
 from andon.display.reference import tone_curve
-from andon.display.time_series import Curve, Panel, drawn
+from andon.display.time_series import INK, LEFT_PX, PAPER, Curve, Panel, drawn
 from andon.errors import InputError
 from andon.observer.spread.cie135 import cie135
 from andon.observer.spread.model import SpreadFunction
@@ -40,7 +40,8 @@ DASHES_PX = (None, 9.0, 4.0, 16.0)
 
 WIDTH_PX, TILE_COLUMNS = 1200, 4
 # Half of a tile, and what is white on it for a point that gives 1 lx at the eye.
-TILE_DEGREES, TILE_PX = 5.0, 300
+TILE_DEGREES, TILE_PX, MARGIN_PX = 5.0, 300, 4
+HEADING_PX = 48
 WHITE_PER_SR = 60.0
 # Of a pixel to a side, over which the model is averaged; even, so that none is the point itself.
 SAMPLES = 4
@@ -49,9 +50,9 @@ SAMPLES = 4
 def spread_plot(spreads: Sequence[Spread], /) -> Rgb:
     """(H, W, 3) uint8: three diagrams of 1…12 models, each with the age that it is of.
 
-    Above bloom, and dotted what a halo adds in green light, in sr⁻¹; in the middle the ratio to CIE
-    135 at 25 years with brown eyes; below a point of light in linear light, encoded as sRGB.
-    Outside the angles that a model is valid for its line is thin.
+    Above the bloom in sr⁻¹; in the middle its ratio to CIE 135 at 25 years with brown eyes; below
+    how a point of light looks, bloom and halo, in linear light encoded as sRGB. Outside the angles
+    that a model is valid for its line is thin.
 
     Raises `InputError` for more models than the picture has room for.
     """
@@ -63,8 +64,9 @@ def spread_plot(spreads: Sequence[Spread], /) -> Rgb:
         )
     charts = drawn([_functions(spreads), _ratios(spreads)], width_px=WIDTH_PX)
     tiles = [(_label(spread, age, spreads), _point(spread)) for spread, age in spreads]
-    strip = contact_sheet(tiles, columns=TILE_COLUMNS)
-    return np.concatenate([charts, strip])
+    while len(tiles) % TILE_COLUMNS:
+        tiles.append(("", np.full_like(tiles[0][1], PAPER)))
+    return np.concatenate([charts, _heading(), contact_sheet(tiles, columns=TILE_COLUMNS)])
 
 
 def _label(spread: SpreadFunction, age: float, spreads: Sequence[Spread]) -> str:
@@ -94,7 +96,7 @@ def _curves(spreads: Sequence[Spread], reference: Float, ends: tuple[float, floa
                 dash_px=dash_px,
             )
         )
-        curves.append(Curve("", colour, THETA_DEGREES, y, 0.75))
+        curves.append(Curve("", colour, THETA_DEGREES, np.where(valid, np.nan, y), 0.75))
     return curves
 
 
@@ -132,8 +134,21 @@ def _ratios(spreads: Sequence[Spread]) -> Panel:
     )
 
 
+def _heading() -> Rgb:
+    from PIL import Image, ImageDraw, ImageFont
+
+    image = Image.new("RGB", (WIDTH_PX, HEADING_PX), PAPER)
+    font = ImageFont.load_default(size=16)
+    text = (
+        f"A point that gives 1 lx at the eye, {2 * TILE_DEGREES:g}° x {2 * TILE_DEGREES:g}°, "
+        f"white: {WHITE_PER_SR:g} cd/m2"  # Pillow's own font has no × and no ²
+    )
+    ImageDraw.Draw(image).text((LEFT_PX, HEADING_PX / 2), text, fill=INK, font=font, anchor="lm")
+    return np.asarray(image)
+
+
 def _point(spread: SpreadFunction) -> Rgb:
-    """A tile with a point of 1 lx in its middle."""
+    """A tile with a point of 1 lx in its middle, and a margin of paper."""
     fine = TILE_PX * SAMPLES
     across = ((np.arange(fine) + 0.5) / fine - 0.5) * 2 * TILE_DEGREES
     theta = np.geomspace(1e-4, 2 * TILE_DEGREES, 2000)
@@ -142,4 +157,8 @@ def _point(spread: SpreadFunction) -> Rgb:
     light = np.stack([np.interp(away, theta, values[:, c]) for c in range(3)], axis=-1)
     light = light.reshape(TILE_PX, SAMPLES, TILE_PX, SAMPLES, 3).mean(axis=(1, 3))
     encoded = srgb_encode(tone_curve(light / WHITE_PER_SR, "hue"))
-    return np.asarray(np.clip(encoded, 0, 1) * 255 + 0.5, np.uint8)
+    tile = np.full((TILE_PX, TILE_PX, 3), PAPER, np.uint8)
+    tile[:, MARGIN_PX:-MARGIN_PX] = (np.clip(encoded, 0, 1) * 255 + 0.5).astype(np.uint8)[
+        :, MARGIN_PX:-MARGIN_PX
+    ]
+    return tile

@@ -18,6 +18,9 @@ from andon.engines.glass_gpu import GlassBuffers, GlassView
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import NO_LAMPS, PROBES, taking
+from andon.glare.highlights import stage as highlights
+from andon.glare.highlights.stage import HighlightStage
+from andon.glare.highlights.sum import highlights_of_lamps
 from andon.glass.layers import Layered
 from andon.glow.stage import GlowStage
 from andon.gpu.bindings import bind_group
@@ -91,6 +94,11 @@ class _View:
             "structs": STRUCTS,
             "variants": gbuffer.projection_variant(view) | engine.variants,
         }
+        self.highlights: HighlightStage | None = None
+        if engine.finishes is not None:
+            variants = options["variants"] | {highlights.SUM: engine.lamps_mirrored}
+            own = engine.finishes, groups, STRUCTS, variants
+            self.highlights = highlights.HighlightStage(gpu, view, *own)
         entry = self._entry_point(prepared)
         self.relit = FullscreenPass(gpu, FRAME, entry, ["rgba16float"], groups, **options)
         # Half floats end at 65504, sunlight does not, and this picture is for machines.
@@ -148,6 +156,17 @@ class GpuEngine:
             captured=frozenset() if probes is None else probes.captured,
             balls=prepared.balls,
         )
+        self.finishes: highlights.FinishBuffers | None = None
+        self.lamps_mirrored = ""
+        if prepared.highlights is not None:
+            self.finishes = highlights.FinishBuffers(self.gpu, prepared.highlights.at(0.0))
+            self.lamps_mirrored = highlights_of_lamps(
+                self.start.lamps,
+                terms=self.direct.terms,
+                softening=self.direct.softening,
+                edges=self.direct.areas.edges,
+                captured=frozenset() if probes is None else probes.captured,
+            )
         self.glass: GlassBuffers | None = None
         if prepared.glass is not None:
             white = next(iter(prepared.frames.values())).luminance_per_unit
@@ -190,6 +209,10 @@ class GpuEngine:
             self.probes.move(moment.object_middles)
             light.probes.encode(self.encoder, light.changed_rectangles(moment))
         light.relit.encode(self.encoder, [light.luminance.view])
+        own = self.prepared.highlights
+        if own is not None and self.finishes is not None and light.highlights is not None:
+            self.finishes.update(own.at(moment.time_seconds), moment.time_seconds)
+            light.highlights.encode(self.encoder, light.luminance.view)
         light.has_lamps = light.composite.lamps.encode(
             self.encoder, light.luminance.view, seen, moment.lamps, frame.luminance_per_unit
         )

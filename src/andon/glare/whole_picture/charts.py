@@ -113,26 +113,8 @@ def block_directions(view: View, /) -> Float:
     latlong picture the directions come down on the other side, beyond its sides they go round.
     """
     rows, columns = block_shape(view)
-    # The view of the blocks: its pixel b lies at b + 1 of the array.
-    fx, fy = view.fx / 2, view.fy / 2
     y, x = np.mgrid[:rows, :columns].astype(np.float64) * 2 - 1.5
-    if view.projection == "latlong":
-        azimuth = (x + 0.5) / view.width * 2 * np.pi - np.pi
-        elevation = np.pi / 2 - (y + 0.5) / view.height * np.pi
-        flat = np.cos(elevation)
-        return np.stack(
-            [flat * np.sin(azimuth), -np.sin(elevation), flat * np.cos(azimuth)], axis=-1
-        )
-    blocks = View(
-        view.projection,
-        columns,
-        rows,
-        fx,
-        fy,
-        (view.cx - 0.5) / 2 + 1,
-        (view.cy - 0.5) / 2 + 1,
-    )
-    return blocks.directions()
+    return view.directions_at(np.stack([x, y], -1))
 
 
 def charts_of(view: View, /) -> tuple[Chart, ...]:

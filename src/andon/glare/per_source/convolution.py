@@ -80,7 +80,9 @@ def disc_veil(kernel: Kernel, radius: float, theta: Float, /, *, core: bool) -> 
     least, most = np.abs(theta - radius), np.minimum(theta + radius, 2 * np.pi - theta - radius)
     # Rings that lie inside the disc as a whole: around P, and where P's antipode is inside.
     total = ring_integral(kernel, np.tan(np.maximum(radius - theta, 0) / 2), core=core)
-    behind = ring_integral(kernel, FAR, core=core) - ring_integral(kernel, np.tan(most/2), core=core)
+    behind = ring_integral(kernel, FAR, core=core) - ring_integral(
+        kernel, np.tan(most / 2), core=core
+    )
     total += np.where(theta + radius > np.pi, behind, 0)
     total *= 2 * np.pi
     edge = np.clip(np.radians(kernel.minimum_degrees), least, most)

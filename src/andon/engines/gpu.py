@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from andon import gbuffer
 from andon.composite import stage as composite
 from andon.composite.reference import unlit_linear
+from andon.display import ost
 from andon.display.model import Seen
 from andon.display.ost_stage import OstStage
 from andon.display.stage import DisplayStage
@@ -74,13 +75,14 @@ class _View:
             self.filtered = make_texture(gpu, alone.format, view.width, view.height, label="glow")
             self.hide = None if self.glass is None else self.glass.hiding(alone)
         self.glare: GlareView | None = None
-        shown = self.luminance
+        shown, through = self.luminance, prepared.exposure.see_through
+        unlit = None if through is None else unlit_linear(frame, prepared.ambient)
         if prepared.glare is not None:
-            self.glare = GlareView(gpu, prepared.glare, frame, self.luminance)
+            real = None if through is None or unlit is None else ost.real_light(unlit, through)
+            self.glare = GlareView(gpu, prepared.glare, frame, self.luminance, real)
             shown = self.glare.seen
         self.display: DisplayStage | OstStage
-        if prepared.exposure.see_through is not None:
-            unlit = unlit_linear(frame, prepared.ambient)
+        if unlit is not None:
             self.display = OstStage(gpu, shown, frame, prepared.exposure, unlit)
         else:
             self.display = DisplayStage(

@@ -227,11 +227,19 @@ class ReferenceEngine:
         own, word = self.prepared.glare, self.prepared.photometry
         if own is None:
             return luminance
-        light = np.maximum(np.nan_to_num(np.asarray(luminance.cd_m2, np.float64)), 0)
+        light = all_light = np.maximum(np.nan_to_num(np.asarray(luminance.cd_m2, np.float64)), 0)
+        through = self.prepared.exposure.see_through
+        if through is not None:
+            # Real light glares in the eye by itself.
+            unlit = composite.unlit_linear(frame, self.prepared.ambient)
+            real = frame.luminance_per_unit * ost.real_light(unlit, through)
+            light = np.maximum(all_light - real, 0)
         whole = whole_picture.scattered(light, own.plans[frame.view.name])
-        around = own.around_sources(light, frame.view)
-        self._glare = Luminance(whole.glare + around, word)
-        return Luminance(whole.picture + around, word)
+        added = whole.glare + own.around_sources(light, frame.view)
+        self._glare = Luminance(added, word)
+        if through is not None:
+            return Luminance(all_light + added, word)
+        return Luminance(whole.picture - whole.glare + added, word)
 
     def read_glare(self, frame: CameraFrame) -> Luminance | None:
         """What glare added to the view that was drawn last."""

@@ -92,11 +92,14 @@ class Chart:
         y, x = np.mgrid[:rows, :columns] + 0.5 - MARGIN
         return self.direction_from_place(np.stack([x, y], -1) * 2.0 ** (level - 1))
 
-    def share(self, directions: Float, /, *, pair: bool) -> Float:
-        """(...) in [0, 1] how much of what is seen there this chart gives; all charts sum to 1."""
+    def share(self, directions: Float, degrees: float = BLEND_DEGREES, /, *, pair: bool) -> Float:
+        """(...) in [0, 1] how much of what is there is this chart's; all charts sum to 1.
+
+        One of a pair passes into the other between `degrees` above and below the horizon.
+        """
         if not pair:
             return np.ones(directions.shape[:-1])
-        height = directions @ self.chart_from_camera[2] / math.sin(math.radians(BLEND_DEGREES))
+        height = directions @ self.chart_from_camera[2] / math.sin(math.radians(degrees))
         along = np.clip((height + 1) / 2, 0, 1)
         return along**2 * (3 - 2 * along)
 

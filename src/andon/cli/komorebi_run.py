@@ -36,7 +36,7 @@ def run(options: KomorebiOptions) -> None:
     def draw(time_seconds: float) -> NDArray[np.uint8]:
         from andon.cli.glare_outputs import exposed
 
-        return exposed(seen.picture(time_seconds), scale)
+        return exposed(seen.picture(time_seconds), scale, "reinhard")
 
     write_film(options.out, draw, times, options.frames_per_second, 3 * height * width)
     print(options.out)

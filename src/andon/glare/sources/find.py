@@ -21,17 +21,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
+from andon.glare.gate import HIGHLIGHT_CONTRAST
 from andon.glare.model import Source
 from andon.glare.sources.moments import Moments, pixel_moments, sources_of
 from andon.glare.sources.regions import connected_regions
 from andon.quantities import photometric
 from andon.spaces import View
 
-__all__ = ["HIGHLIGHT_CONTRAST", "FoundSources", "background_luminance", "find_sources"]
+__all__ = ["FoundSources", "background_luminance", "find_sources"]
 
 Float = NDArray[np.float64]
 
-HIGHLIGHT_CONTRAST = 40.0
 # The mean without sources falls from round to round and the sources grow; real pictures take 3…12.
 ROUNDS = 40
 

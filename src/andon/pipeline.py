@@ -96,6 +96,7 @@ class Frame:
     bodies : luminance of luminous bodies and visible lamps alone, cd/m²; None without any.
     glow : the same as the glow filters it; None without a glow.
     glass : the images that glass shows, sharp; None without glass.
+    highlights : mirrored lamps alone, cd/m²; None where nothing mirrors.
     seen : what the eye gets through an optical see-through display; None for a video one.
     """
 
@@ -109,6 +110,7 @@ class Frame:
     glow: Luminance | None = None
     seen: Seen | None = None
     glass: Layered | None = None
+    highlights: Luminance | None = None
 
 
 class Renderer:
@@ -198,6 +200,7 @@ class Renderer:
             filtered,
             seen,
             layered,
+            self._engine.read_highlights(captured),
         )
 
     def picture(self, time_seconds: float = 0.0, view: str | None = None) -> NDArray[np.uint8]:

@@ -21,11 +21,11 @@ PICTURE = "picture"
 
 
 class _PictureFirst(TyperGroup):
-    """Takes what is no sub-command for the arguments of `PICTURE`, once there is one."""
+    """Takes what is no sub-command for the arguments of `PICTURE`."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         known = {*self.commands, *ctx.help_option_names}
-        if PICTURE in self.commands and args and args[0] not in known:
+        if args and args[0] not in known:
             args = [PICTURE, *args]
         return super().parse_args(ctx, args)
 

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from andon.glare.kernel import FADE_DEGREES, Kernel
 from andon.glare.model import Outline
 
-__all__ = ["disc_veil", "outline_veil", "ring_integral"]
+__all__ = ["disc_veil", "edge_points", "outline_veil", "ring_integral"]
 
 Float = NDArray[np.float64]
 
@@ -136,7 +136,7 @@ def outline_veil(kernel: Kernel, outline: Outline, points: Float, /, *, core: bo
     radius = outline.radius(np.arctan2(points[:, 1], points[:, 0]))
     at_edge = np.abs(away - radius) < NEAR_EDGE * largest
     for which, pieces in ((near & at_edge, EDGE_PIECES), (near & ~at_edge, COARSE_PIECES)):
-        veil[which] = _along_edge(kernel, _edge(outline, pieces), points[which], core=core)
+        veil[which] = _along_edge(kernel, edge_points(outline, pieces), points[which], core=core)
     for which, nodes in ((~near & ~far, NEAR_NODES), (far, FAR_NODES)):
         places, weights = _area_nodes(outline, *nodes)
         psi = np.arccos(np.clip(points[which] @ places.T, -1, 1))
@@ -150,8 +150,8 @@ def _directions(theta: Float, phi: Float) -> Float:
     )
 
 
-def _edge(outline: Outline, pieces: int) -> Float:
-    """(pieces, 3) points of the edge, equally far apart."""
+def edge_points(outline: Outline, pieces: int = EDGE_PIECES, /) -> Float:
+    """(pieces, 3) points of the edge, equally far apart, in the source's frame."""
     phi = np.linspace(0, 2 * np.pi, 16 * pieces + 1)
     points = _directions(outline.radius(phi), phi)
     walked = np.linalg.norm(np.diff(points, axis=0), axis=1).cumsum()

@@ -17,7 +17,9 @@ which row an azimuth is on.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -25,12 +27,25 @@ from numpy.typing import NDArray
 
 from andon.glare.kernel import Kernel
 from andon.glare.model import Outline
-from andon.glare.per_source.convolution import disc_veil, outline_veil
+from andon.glare.per_source.convolution import disc_veil, edge_points, outline_veil
 from andon.glare.per_source.coordinates import Confocal, chord, confocal_of
+from andon.glare.per_source.model import Bloom
 
-__all__ = ["COLUMNS", "EDGE", "EDGES", "VeilTable", "convolved_table"]
+__all__ = [
+    "COLUMNS",
+    "EDGE",
+    "EDGES",
+    "FAR_COLUMNS",
+    "ROWS",
+    "VeilTable",
+    "columns_of",
+    "convolved_table",
+    "outline_table",
+    "table_of",
+]
 
 Float = NDArray[np.float64]
+
 
 COLUMNS, EDGE = 224, 32
 # Columns that (m − m0)² adds up to the antipode of a point.
@@ -52,6 +67,7 @@ class VeilTable:
     Attributes
     ----------
     values : (rows, COLUMNS) cd/m² per lux, as above.
+    beyond : (rows, COLUMNS) radians from the outline, 0 inside: where the halo's ring is.
     edge : (EDGES,) m0 at ν = 2π·i/EDGES; (1,) of a circle.
     rows_at : (EDGES + 1,) row, 0…rows, at the same ν and at 2π; of a circle (0, 0).
     frame : coordinates of the outline.
@@ -60,6 +76,7 @@ class VeilTable:
     """
 
     values: Float
+    beyond: Float
     edge: Float
     rows_at: Float
     frame: Confocal
@@ -68,20 +85,20 @@ class VeilTable:
 
     def at(self, x: Float, y: Float, /) -> Float:
         """(...) cd/m² per lux at places (...) of Lambert's chart, x along the long axis."""
+        where = self._where(x, y)
+        return where[2] * _between(self.values, *where[:2])
+
+    def beyond_at(self, x: Float, y: Float, /) -> Float:
+        """(...) radians from the outline at the same places, 0 inside."""
+        return _between(self.beyond, *self._where(x, y)[:2])
+
+    def _where(self, x: Float, y: Float) -> tuple[Float, Float, Float]:
+        """Rows and columns (...), and the factors on values."""
         m, nu = self.frame.of(x, y)
-        steps, rows = len(self.edge), len(self.values)
-        before, after, share = _neighbours(nu / (2 * np.pi), steps)
+        before, after, share = _neighbours(nu / (2 * np.pi) * len(self.edge), len(self.edge))
         edge = (1 - share) * self.edge[before] + share * self.edge[after]
         row = (1 - share) * self.rows_at[before] + share * self.rows_at[before + 1]
-        row, following, part = _neighbours(row / rows, rows)
-        column, factor = self.columns(m, edge)
-        first = np.minimum(column.astype(np.int32), COLUMNS - 2)
-        beside = column - first
-        near, far = (
-            (1 - part) * self.values[row, at] + part * self.values[following, at]
-            for at in (first, first + 1)
-        )
-        return factor * ((1 - beside) * near + beside * far)
+        return row, *self.columns(m, edge)
 
     def columns(self, m: Float, edge: Float, /) -> tuple[Float, Float]:
         """Columns (...) of m (...) where the edge is at `edge`, and the factors on values."""
@@ -110,23 +127,72 @@ class VeilTable:
         return np.log2(1 + (edge - self.frame.focus) / self.step)
 
 
+@lru_cache(maxsize=256)
+def _table(kernel: Kernel, radii: bytes, core: bool, bloom: Bloom | None) -> VeilTable:
+    outline = Outline(np.frombuffer(radii, np.float64))
+    if bloom is None:
+        return convolved_table(kernel, outline, core=core)
+    return outline_table(kernel, outline, bloom)
+
+
+def table_of(
+    kernel: Kernel, outline: Outline, /, *, core: bool, bloom: Bloom | None = None
+) -> VeilTable:
+    """The table of an outline, kept: `convolved_table`, or `outline_table` where there is `bloom`.
+
+    2 ms for a circle, 50 to 250 ms for others.
+    """
+    return _table(kernel, outline.radii_radians.tobytes(), core, bloom)
+
+
 def convolved_table(kernel: Kernel, outline: Outline, /, *, core: bool) -> VeilTable:
     """The table of K ⊗ a uniform `outline`; with `core` the plateau within θ_min, too."""
+
+    def veil(points: Float) -> Float:
+        if len(outline.radii_radians) > 1:
+            return outline_veil(kernel, outline, points, core=core)
+        theta = 2 * np.arcsin(np.minimum(np.linalg.norm(points - [0, 0, 1.0], axis=-1) / 2, 1))
+        return disc_veil(kernel, float(outline.radii_radians[0]), theta, core=core)
+
+    return _filled(kernel, outline, veil, fine=1 if core else FINE)
+
+
+def outline_table(kernel: Kernel, outline: Outline, bloom: Bloom, /) -> VeilTable:
+    """The table of the paper's form: `bloom` of θ − θ0(φ), which is no convolution."""
+
+    def veil(points: Float) -> Float:
+        theta = np.arctan2(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+        phi = np.arctan2(points[:, 1], points[:, 0])
+        return bloom(np.degrees(theta - outline.radius(phi)))
+
+    return _filled(kernel, outline, veil, fine=1)
+
+
+def _filled(
+    kernel: Kernel, outline: Outline, veil: Callable[[Float], Float], *, fine: int
+) -> VeilTable:
+    """The table of `veil` at unit vectors (n, 3), looked at `fine` times for each column."""
     table, nu = _empty(kernel, outline)
-    fine = 1 if core else FINE
     columns = np.arange((COLUMNS - 1) * fine + 1) / fine
     kept, index = _mirrored(table.edge, len(nu))
     edge = np.interp(nu[kept], 2 * np.pi * np.arange(len(table.edge)) / len(table.edge), table.edge)
     m = table.distances(edge[:, None], columns)
     points = table.frame.directions(m, np.broadcast_to(nu[kept][:, None], m.shape))
-    if len(nu) == 1:
-        theta = 2 * np.arcsin(np.minimum(m[0] / 2, 1))
-        veil = disc_veil(kernel, float(outline.radii_radians[0]), theta, core=core)
-    else:
-        veil = outline_veil(kernel, outline, points.reshape(-1, 3), core=core)
-    veil = veil.reshape(m.shape) / table.columns(m, edge[:, None])[1]
-    table.values[:] = (veil if core else _blurred(veil))[index]
+    values = veil(points.reshape(-1, 3)).reshape(m.shape) / table.columns(m, edge[:, None])[1]
+    table.values[:] = (values if fine == 1 else _blurred(values))[index]
+    table.beyond[:] = _beyond(outline, points[:, ::fine])[index]
     return table
+
+
+def _beyond(outline: Outline, points: Float) -> Float:
+    """Radians (rows, COLUMNS) from the outline to `points` outside, 0 inside."""
+    if len(outline.radii_radians) == 1:
+        theta = np.arctan2(np.hypot(points[..., 0], points[..., 1]), points[..., 2])
+        return np.maximum(theta - outline.radii_radians[0], 0)
+    nearest = np.max(points[:, EDGE:] @ edge_points(outline).T, axis=-1)
+    beyond = np.zeros(points.shape[:2])
+    beyond[:, EDGE:] = np.arccos(np.clip(nearest, -1, 1))
+    return beyond
 
 
 def _empty(kernel: Kernel, outline: Outline) -> tuple[VeilTable, Float]:
@@ -139,20 +205,20 @@ def _empty(kernel: Kernel, outline: Outline) -> tuple[VeilTable, Float]:
         edge = frame.edge(outline, EDGES)
         rows_at = _rows(frame, edge, chord(np.radians(kernel.minimum_degrees)))
         nu = np.interp(np.arange(ROWS), rows_at, np.linspace(0, 2 * np.pi, EDGES + 1))
-    step, per_octave = _columns(kernel, outline)
-    values = np.empty((len(nu), COLUMNS))
-    return VeilTable(values, edge, rows_at, frame, step, per_octave), nu
+    step, per_octave = columns_of(kernel, outline)
+    values, beyond = np.empty((2, len(nu), COLUMNS))
+    return VeilTable(values, beyond, edge, rows_at, frame, step, per_octave), nu
 
 
-def _columns(kernel: Kernel, outline: Outline) -> tuple[float, float]:
-    """s and the columns per octave.
+def columns_of(kernel: Kernel, outline: Outline, /) -> tuple[float, float]:
+    """s and the columns per octave, which are those of all outlines.
 
     The end of the core, which is a bend at θ_min from a point, lies on a column: two octaves out.
     """
     least = float(chord(np.radians(kernel.minimum_degrees)))
     radius = np.sqrt(outline.solid_angle_sr / np.pi)
     step = (least - radius) / 3 if 2 * radius < least else least / 6
-    octaves = np.log2(1 + 2 / step)
+    octaves = np.log2(1 + 12 / least)
     return float(step), float(np.floor(2 * (COLUMNS - 1 - EDGE - FAR_COLUMNS) / octaves) / 2)
 
 
@@ -178,11 +244,22 @@ def _rows(frame: Confocal, edge: Float, least: Float) -> Float:
     return rows * ROWS / rows[-1]
 
 
-def _neighbours(turns: Float, count: int) -> tuple[Any, Any, Float]:
-    """Indices of `count` equal steps around that turns (...) lie between, and how far along."""
-    place = turns % 1 * count
+def _neighbours(place: Float, count: int) -> tuple[Any, Any, Float]:
+    """Indices that places (...) lie between, of `count` around, and how far along."""
+    place = place % count
     first = np.minimum(place.astype(np.int32), count - 1)
     return first, (first + 1) % count, place - first
+
+
+def _between(values: Float, row: Float, column: Float) -> Float:
+    """Values (...) at rows and columns (...), linear in both."""
+    row, following, part = _neighbours(row, len(values))
+    first = np.minimum(column.astype(np.int32), COLUMNS - 2)
+    beside = column - first
+    near, far = (
+        (1 - part) * values[row, at] + part * values[following, at] for at in (first, first + 1)
+    )
+    return (1 - beside) * near + beside * far
 
 
 def _mirrored(edge: Float, rows: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

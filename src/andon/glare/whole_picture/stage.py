@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +12,8 @@ from andon.errors import InputError
 from andon.glare.whole_picture import tables
 from andon.glare.whole_picture.charts import MARGIN, Chart, block_shape
 from andon.glare.whole_picture.plan import WholePlan
-from andon.glare.whole_picture.splines import taps
+from andon.glare.whole_picture.ladder import Rung
+from andon.glare.whole_picture.splines import filters
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.passes import FullscreenPass, color_attachment
@@ -26,6 +26,7 @@ __all__ = ["WholePictureStage"]
 BETWEEN, SMOOTH = "rgba32float", "rgba16float"
 FOLDER = "andon/glare/whole_picture"
 NUMBERS = f"{FOLDER}/numbers.wgsl"
+Bindings = dict[int, tuple[str, Any]]
 # Veil on top of what stays: alpha of the veil says how much does, alpha of the picture stays.
 STAYS = {
     "color": {"operation": "add", "src_factor": "one", "dst_factor": "src-alpha"},
@@ -69,7 +70,7 @@ class WholePictureStage:
         module: str,
         entry: str,
         target: Texture,
-        resources: dict[int, tuple[str, Any]],
+        resources: Bindings,
         numbers: str = "",
     ) -> _Step:
         variants = {NUMBERS: numbers or _numbers(self.plan)}
@@ -88,7 +89,10 @@ class WholePictureStage:
         """Pixels → blocks → cells of all levels."""
         steps: list[_Step] = []
         for chart, blocks, levels in zip(self.plan.charts, self._blocks, self._lights, strict=True):
-            roots = [self._filled(root, "r32float") for root in _roots(self.plan, chart)]
+            roots = [
+                self._filled(_first_root(self.plan, chart, level), "r32float")
+                for level in range(1, self.plan.levels + 1)
+            ]
             factors = self._filled(tables.block_factors(self.plan, chart), "r32float")
             inputs = {0: ("float", source.view), 1: ("float", factors)}
             steps.append(self._pass("light", "reduce_blocks", blocks, inputs))
@@ -125,26 +129,43 @@ class WholePictureStage:
     def _spread(self) -> list[_Step]:
         """From the coarsest level to the first: a level's veil takes the place of its light."""
         steps: list[_Step] = []
-        for levels, places in zip(self._lights, self._far_places, strict=True):
+        for chart, levels, places in zip(
+            self.plan.charts, self._lights, self._far_places, strict=True
+        ):
+            far = {3: ("float", self._far_light.view), 4: ("uint", places)}
             for level in range(self.plan.levels, 0, -1):
-                cells = levels[level - 1]
-                above = levels[min(level, self.plan.levels - 1)]
-                swept = make_texture(self.gpu, BETWEEN, cells.width, cells.height)
-                # The coarsest has none above it; it is given a texture that it does not read.
-                above = swept if above is cells else above
-                entry = "accumulated" + "_top" * (level == self.plan.levels)
-                entry += "_far" * (level == self.plan.far.level)
-                numbers = _numbers(self.plan, level)
-                shared = {2: ("float", self._far_light.view), 3: ("uint", places)}
-                first = {0: ("float", cells.view), 1: ("float", cells.view), **shared}
-                then = {0: ("float", swept.view), 1: ("float", above.view), **shared}
-                steps.append(self._pass("spread", "filtered_x", swept, first, numbers))
-                steps.append(self._pass("spread", entry, cells, then, numbers))
+                above = levels[level].view if level < self.plan.levels else None
+                steps += self._level(chart, level, levels[level - 1], above, far)
+        return steps
+
+    def _level(
+        self, chart: Chart, level: int, cells: Texture, above: Any | None, far: Bindings
+    ) -> list[_Step]:
+        """Its rungs along x, and along y with all that is on top."""
+        rungs = _rungs(self.plan, level)
+        numbers = _numbers(self.plan, level)
+        steps: list[_Step] = []
+        swept: list[Any] = []
+        for rung, entry in zip(rungs, ("filtered_x", "filtered_x_second"), strict=False):
+            target = make_texture(self.gpu, BETWEEN, cells.width, cells.height)
+            # The first has its √w in alpha of the cells.
+            root = self._filled(_root(self.plan, chart, rung), "r32float") if swept else cells.view
+            inputs = {0: ("float", cells.view), 1: ("float", root)}
+            steps.append(self._pass("spread", entry, target, inputs, numbers))
+            swept.append(target.view)
+        # What the constants leave out is not read, but must be there and not be drawn into.
+        unread = far[3]
+        inputs = {
+            index: ("float", view) if view is not None else unread
+            for index, view in enumerate((*swept, None, None)[:2])
+        }
+        inputs[2] = unread if above is None else ("float", above)
+        steps.append(self._pass("spread", "accumulated", cells, inputs | far, numbers))
         return steps
 
     def _seen(self) -> _Step:
         """Cells of level 1 → blocks."""
-        inputs: dict[int, tuple[str, Any]] = {}
+        inputs: Bindings = {}
         for index, (chart, levels) in enumerate(zip(self.plan.charts, self._lights, strict=True)):
             inputs[2 * index] = ("float", levels[0].view)
             places = self._filled(tables.block_places(self.plan, chart))
@@ -195,25 +216,39 @@ def _levels(gpu: Gpu, chart: Chart, count: int) -> list[Texture]:
     return [make_texture(gpu, BETWEEN, columns, rows) for rows, columns in shapes]
 
 
-def _roots(plan: WholePlan, chart: Chart) -> list[NDArray[np.float64]]:
-    """√w of the cells of each level."""
-    scales: Callable[[int], Any] = lambda level: chart.scale(chart.cell_directions(level))  # noqa: E731
-    return [plan.root(chart, level, scales(level)) for level in range(1, plan.levels + 1)]
+def _rungs(plan: WholePlan, level: int) -> list[Rung]:
+    return [rung for rung in plan.ladder.rungs if rung.level == level]
+
+
+def _root(plan: WholePlan, chart: Chart, rung: Rung) -> NDArray[np.float64]:
+    """√w of the cells of a rung's level."""
+    return plan.root(rung, chart.scale(chart.cell_directions(rung.level)))
+
+
+def _first_root(plan: WholePlan, chart: Chart, level: int) -> NDArray[np.float64]:
+    """√w of a level's first rung, 0 where it has none."""
+    rungs = _rungs(plan, level)
+    return _root(plan, chart, rungs[0]) if rungs else np.zeros(chart.array_shape(level))
 
 
 def _numbers(plan: WholePlan, level: int = 1, window: tuple[int, int] | None = None) -> str:
     """The constants that stand in for numbers.wgsl."""
-    side = ", ".join(f"{tap:.9g}f" for tap in taps(level))
     row = "1.0"
     if plan.view.projection == "latlong":
         row = f"sin((f32(row) + 0.5) * {np.pi / plan.view.height:.9g}f)"
     columns, rows = window or (1, 1)
-    return "\n".join(
-        [
-            f"const MARGIN: i32 = {MARGIN};",
-            f"const WINDOW = vec2i({columns}, {rows});",
-            f"const RADIUS: i32 = {len(taps(level)) - 1};",
-            f"const TAPS = array<f32, {len(taps(level))}>({side});",
-            f"fn weight_of_row(row: i32) -> f32 {{ return {row}; }}",
-        ]
-    )
+    rungs = _rungs(plan, level)
+    taps = [filters(level)[rung.which] for rung in rungs] + [(1.0, 0.0)] * (2 - len(rungs))
+    lines = [
+        f"const MARGIN: i32 = {MARGIN};",
+        f"const WINDOW = vec2i({columns}, {rows});",
+        f"const RUNGS: i32 = {len(rungs)};",
+        f"const HAS_ABOVE: bool = {str(level < plan.levels).lower()};",
+        f"const HAS_FAR: bool = {str(level == plan.far.level).lower()};",
+        f"fn weight_of_row(row: i32) -> f32 {{ return {row}; }}",
+    ]
+    for name, side in zip(("", "WIDE_"), taps, strict=True):
+        values = ", ".join(f"{tap:.9g}f" for tap in side)
+        lines.append(f"const {name}RADIUS: i32 = {len(side) - 1};")
+        lines.append(f"const {name}TAPS = array<f32, {len(side)}>({values});")
+    return "\n".join(lines)

@@ -71,7 +71,7 @@ def block_places(plan: WholePlan, chart: Chart, /) -> Float:
     directions = block_directions(plan.view)
     places = chart.array_place(chart.place_from_direction(directions), 1)
     share = chart.share(directions, pair=plan.pair)
-    stays = share * (1 - plan.resolved(chart, chart.scale(directions)))
+    stays = share * (1 - plan.resolved(chart.scale(directions)))
     # Where a chart has no share it may have no place either.
     places = np.clip(places, -1e6, 1e6)
     return np.concatenate([places, share[..., None], stays[..., None]], -1)

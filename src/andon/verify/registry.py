@@ -52,6 +52,8 @@ def rows() -> tuple[Row, ...]:
         areas,
         caustic,
         gaze,
+        glare_flicker,
+        glare_models,
         glass,
         glass_blur,
         glass_frame,
@@ -83,4 +85,6 @@ def rows() -> tuple[Row, ...]:
         *glass_blur.ROWS,
         *glass_frame.ROWS,
         *caustic.ROWS,
+        *glare_flicker.ROWS,
+        *glare_models.ROWS,
     )

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from andon.spaces import View
 
-__all__ = ["MARGIN", "Chart", "block_directions", "block_shape", "charts_of"]
+__all__ = ["MARGIN", "Chart", "block_directions", "block_shape", "charts_of", "pixel_angles"]
 
 Float = NDArray[np.float64]
 
@@ -136,6 +136,23 @@ def charts_of(view: View, /) -> tuple[Chart, ...]:
         Chart(rotation, cell, np.full(2, -half * cell), (2 * half, 2 * half))
         for rotation in (axes, down)
     )
+
+
+def pixel_angles(view: View, scales: Float, /) -> Float:
+    """(n,) angle of a pixel, √(solid angle), where the scale of a chart of the view is a (n,).
+
+    About the axis of projection; off it by as much as the principal point is off the middle. 0
+    where no pixel is.
+    """
+    cosine = np.clip(2 * scales - 1, -1, 1)
+    if view.projection == "latlong":
+        # cos of the elevation, whose sine is the cosine to the vertical.
+        form = np.sqrt(1 - cosine**2)
+    elif view.projection == "fisheye":
+        form = np.sinc(np.arccos(cosine) / np.pi)
+    else:
+        form = np.maximum(cosine, 0) ** 3
+    return _axis_pixel(view) * np.sqrt(form)
 
 
 def _axis_pixel(view: View) -> float:

@@ -1,8 +1,9 @@
 """How much light each filter of each level spreads, where the chart's scale is a.
 
-A *rung* is a filter of a level: rung k has σ_k = a·s_k, ``s_k = sigma_cells·2^(level−1)·cell``, and
-takes ``W(σ_k)·χ(s_k)·(ln s_{k+1} − ln s_{k−1})/2`` of a point's light. χ goes from 1 to 0 over a
-few coarse cells, whose angle goes with a as well; the rest of the mixture is the far part's.
+A *rung* is a filter of a level: rung k has σ_k = a·s_k, ``s_k = sigma_cells·2^(level−1)·cell``
+(and what blocks of pixels add, which tells only in the first two), and takes
+``W(σ_k)·χ(s_k)·(ln s_{k+1} − ln s_{k−1})/2`` of a point's light. χ goes from 1 to 0 over a few coarse
+cells, whose angle goes with a as well; the rest of the mixture is the far part's.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.glare.whole_picture.charts import pixel_angles
 from andon.glare.whole_picture.mixture import Mixture, bump
-from andon.glare.whole_picture.splines import filters, sigma_cells
+from andon.glare.whole_picture.splines import BLOCKS_VARIANCE, filters, sigma_cells
+from andon.spaces import View
 
 __all__ = ["Ladder", "Rung"]
 
@@ -23,6 +26,8 @@ Float = NDArray[np.float64]
 # Widths of the first rungs in ln σ, where σ does not grow evenly and the first stands for all that
 # is finer, too: least squares over θ⁻²…θ⁻³, from 2.8 cells of level 1 on (1.9 % at most).
 FIRST_WIDTHS = (0.667, 0.670, 0.464, 0.306)
+# Nodes of what blocks add.
+SCALES = 129
 
 
 @dataclass(frozen=True)
@@ -49,18 +54,23 @@ class Ladder:
     Attributes
     ----------
     rungs : by σ.
+    scales, blocks : (m,) what blocks add to σ² in radians², where the chart's scale is `scales`.
     mixture : W, linear between its nodes, held beyond the ends.
     span : chart units, the s at which χ begins to fall and those at which it ends.
     """
 
     rungs: tuple[Rung, ...]
+    scales: Float
+    blocks: Float
     mixture: Mixture
     span: tuple[float, float]
 
     @staticmethod
-    def of(mixture: Mixture, cell: float, span: tuple[float, float], /) -> Ladder:
+    def of(view: View, mixture: Mixture, cell: float, span: tuple[float, float], /) -> Ladder:
         """The rungs of `mixture` for charts of cells of `cell`."""
-        return Ladder(_rungs(cell, span), mixture, span)
+        scales = np.linspace(0, 1, SCALES)
+        blocks = BLOCKS_VARIANCE * pixel_angles(view, scales) ** 2
+        return Ladder(_rungs(cell, span), scales, blocks, mixture, span)
 
     @property
     def levels(self) -> int:
@@ -69,7 +79,8 @@ class Ladder:
 
     def share_of(self, rung: Rung, scale: Float, /) -> Float:
         """(...) share of a point's light that a rung spreads where the chart's scale is a."""
-        log_sigma = math.log(rung.sigma) + np.log(scale)
+        blocks = np.interp(scale, self.scales, self.blocks)
+        log_sigma = np.log((rung.sigma * scale) ** 2 + blocks) / 2
         return rung.width * np.interp(log_sigma, self.mixture.log_sigma, self.mixture.share)
 
     def near(self, scale: Float, /) -> Float:

@@ -92,5 +92,5 @@ def plan_whole(view: View, kernel: Kernel, /) -> WholePlan:
     level = far_level(charts)
     cell = charts[0].cell
     start, end = (cell * 2 ** (level - 1) * cells for cells in FAR_CELLS)
-    ladder = Ladder.of(mixture, cell, (start, end))
+    ladder = Ladder.of(view, mixture, cell, (start, end))
     return WholePlan(view, kernel, charts, ladder, plan_far(charts, level, kernel, mixture, ladder))

@@ -21,6 +21,7 @@ __all__ = [
     "pack_constants",
     "pack_needles",
     "pixel_radians",
+    "strip_pixels",
 ]
 
 NEEDLE_RECORD = HostStruct(
@@ -95,6 +96,17 @@ def pack_needles(
         records["light"][begin:end] /= luminance_per_unit
         begin = end
     return records
+
+
+def strip_pixels(needles: Sequence[Needles], view: View, /) -> float:
+    """How many pixels the quads of all needles cover near the axis of a pinhole view."""
+    pixel = pixel_radians(view)
+    half = [np.maximum(star.half_width_radians, LEAST_HALF_WIDTH * pixel) for star in needles]
+    areas = [
+        (_whole(star, pixel) * (2 * side + pixel)).sum()
+        for star, side in zip(needles, half, strict=True)
+    ]
+    return float(np.sum(areas)) / pixel**2
 
 
 def _whole(star: Needles, pixel: float) -> NDArray[np.float64]:

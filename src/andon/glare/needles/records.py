@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from andon.glare.needles.model import REFERENCE_NM, WAVELENGTHS_NM, NeedleModel, Needles
 from andon.glare.needles.reference import EXTENT, LEAST_HALF_WIDTH
+from andon.glare.pixels import pixel_radians
 from andon.gpu.layout import HostStruct
 from andon.spaces import View
 
@@ -20,7 +21,6 @@ __all__ = [
     "STRUCTS",
     "pack_constants",
     "pack_needles",
-    "pixel_radians",
     "strip_pixels",
 ]
 
@@ -58,13 +58,6 @@ NEEDLE_CONSTANTS = HostStruct(
 PART_PIXELS, MOST_PARTS = 8.0, 32
 
 STRUCTS = {struct.name: struct for struct in (NEEDLE_RECORD, NEEDLE_CONSTANTS)}
-
-
-def pixel_radians(view: View, /) -> float:
-    """Angle that no pixel of `view` is wider than."""
-    if view.projection == "latlong":
-        return float(max(2 * np.pi / view.width, np.pi / view.height))
-    return float(1 / min(view.fx, view.fy))
 
 
 def pack_constants(model: NeedleModel, view: View, /) -> NDArray[Any]:

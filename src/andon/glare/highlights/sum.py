@@ -107,9 +107,7 @@ def _areas(
     return lines
 
 
-def _area(
-    lamp: AnyAreaLamp, edges: Mapping[str, tuple[int, int]]
-) -> tuple[str, tuple[float, ...]]:
+def _area(lamp: AnyAreaLamp, edges: Mapping[str, tuple[int, int]]) -> tuple[str, tuple[float, ...]]:
     """Which function, and its arguments after the lamp's number."""
     match lamp:
         case SphereLamp():

@@ -19,7 +19,7 @@ from andon.glare.pixels import pixel_radians
 from andon.observer.spread.model import SpreadFunction
 from andon.spaces import View
 
-__all__ = ["has_core", "veil_of_sources"]
+__all__ = ["halos_of_sources", "has_core", "veil_of_sources"]
 
 Float = NDArray[np.float64]
 
@@ -57,6 +57,25 @@ def veil_of_sources(
         table = table_of(kernel, source.outline, core=core, bloom=settings.bloom)
         total += _veil(source, view, kernel, table, settings.least_cd_m2)
         if ring is not None and share > 0:
+            total += share * _ring(source, view, table, ring)
+    return total
+
+
+def halos_of_sources(
+    sources: Sequence[Source],
+    view: View,
+    kernel: Kernel,
+    halo: SpreadFunction,
+    /,
+    *,
+    weights: Sequence[float] | None = None,
+) -> Float:
+    """(H, W, 3) cd/m² of the rings alone, as `veil_of_sources` draws them on top of the veil."""
+    ring = halo_table(halo)
+    total = np.zeros((*view.shape, 3))
+    for source, share in zip(sources, checked_weights(sources, weights), strict=True):
+        if share > 0:
+            table = table_of(kernel, source.outline, core=has_core(view, kernel), bloom=None)
             total += share * _ring(source, view, table, ring)
     return total
 

@@ -24,20 +24,56 @@ Solid = tuple[Float, Float, NDArray[np.int64]]
 LICENCE = "CC0 1.0: no rights reserved"
 # Half the pool's width, its ends along z, the water's level, and the depth of its basin.
 HALF_M, FAR_M, NEAR_M, LEVEL_M, FLOOR_M = 3.0, -5.0, 2.6, -0.12, -0.8
-STONE = {"name": "stone", "pbrMetallicRoughness": {
-    "baseColorFactor": [0.34, 0.31, 0.27, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}}
-PLASTER = {"name": "plaster", "pbrMetallicRoughness": {
-    "baseColorFactor": [0.5, 0.42, 0.33, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}}
-IRON = {"name": "iron", "pbrMetallicRoughness": {
-    "baseColorFactor": [0.06, 0.06, 0.06, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}}
+STONE = {
+    "name": "stone",
+    "pbrMetallicRoughness": {
+        "baseColorFactor": [0.34, 0.31, 0.27, 1.0],
+        "metallicFactor": 0.0,
+        "roughnessFactor": 1.0,
+    },
+}
+PLASTER = {
+    "name": "plaster",
+    "pbrMetallicRoughness": {
+        "baseColorFactor": [0.5, 0.42, 0.33, 1.0],
+        "metallicFactor": 0.0,
+        "roughnessFactor": 1.0,
+    },
+}
+IRON = {
+    "name": "iron",
+    "pbrMetallicRoughness": {
+        "baseColorFactor": [0.06, 0.06, 0.06, 1.0],
+        "metallicFactor": 0.0,
+        "roughnessFactor": 1.0,
+    },
+}
 # What scatters in the water itself: little.
-WATER = {"name": "water", "pbrMetallicRoughness": {
-    "baseColorFactor": [0.012, 0.025, 0.022, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.0}}
+WATER = {
+    "name": "water",
+    "pbrMetallicRoughness": {
+        "baseColorFactor": [0.012, 0.025, 0.022, 1.0],
+        "metallicFactor": 0.0,
+        "roughnessFactor": 0.0,
+    },
+}
 # Reflectances straight ahead: steel and brass (Rec.709 from their optical constants, rounded).
-STEEL = {"name": "polished steel", "pbrMetallicRoughness": {
-    "baseColorFactor": [0.58, 0.56, 0.54, 1.0], "metallicFactor": 1.0, "roughnessFactor": 0.12}}
-BRASS = {"name": "brushed brass", "pbrMetallicRoughness": {
-    "baseColorFactor": [0.89, 0.71, 0.34, 1.0], "metallicFactor": 1.0, "roughnessFactor": 0.32}}
+STEEL = {
+    "name": "polished steel",
+    "pbrMetallicRoughness": {
+        "baseColorFactor": [0.58, 0.56, 0.54, 1.0],
+        "metallicFactor": 1.0,
+        "roughnessFactor": 0.12,
+    },
+}
+BRASS = {
+    "name": "brushed brass",
+    "pbrMetallicRoughness": {
+        "baseColorFactor": [0.89, 0.71, 0.34, 1.0],
+        "metallicFactor": 1.0,
+        "roughnessFactor": 0.32,
+    },
+}
 
 
 def boxes() -> list[tuple[int, Float, Float]]:

@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from andon.glare.komorebi.seen import Seen
     from andon.lamps.flicker import Flicker
 
-__all__ = ["run"]
+__all__ = ["canopy_of", "drawn_by", "run"]
 
 
 def run(options: KomorebiOptions) -> None:
     """Reads, draws, writes. Raises `InputError` before anything is drawn."""
     times = _check(options)
-    canopy = _canopy(options)
+    canopy = canopy_of(options)
     seen = _seen(options, canopy)
     scale = exposure_of(options.exposure)
     if scale is None:
@@ -35,7 +35,7 @@ def run(options: KomorebiOptions) -> None:
     _tell(seen.komorebi, scale)
     height, width = canopy.view.shape
 
-    picture = _drawn_by(seen, options.engine)
+    picture = drawn_by(seen, options.engine)
 
     def draw(time_seconds: float) -> NDArray[np.uint8]:
         from andon.cli.glare_outputs import exposed
@@ -74,7 +74,8 @@ def _of_glare(options: KomorebiOptions) -> GlareOptions:
     )
 
 
-def _canopy(options: KomorebiOptions) -> Canopy:
+def canopy_of(options: KomorebiOptions) -> Canopy:
+    """Leaves and gaps of the options' picture. Raises `InputError` where it shows none."""
     from andon.files.pictures import read_picture
     from andon.glare.calibration import calibrated
     from andon.glare.cleaning import cleaned
@@ -127,7 +128,7 @@ def _seen(options: KomorebiOptions, canopy: Canopy) -> Seen:
     return Seen(shown, eye, options.model, options.seed)
 
 
-def _drawn_by(seen: Seen, engine: str) -> Callable[[float], NDArray[np.float64]]:
+def drawn_by(seen: Seen, engine: str) -> Callable[[float], NDArray[np.float64]]:
     """What draws moments: the GPU where there is one, unless the reference is asked for."""
     if engine == "reference":
         return seen.picture

@@ -19,7 +19,7 @@ from andon.observer.spread.model import Eye
 from andon.quantities import photometric
 from andon.spaces import View
 
-__all__ = ["MOST_STARS", "Stars", "stars_of"]
+__all__ = ["MOST_STARS", "Stars", "halo_share", "stars_of"]
 
 Float = NDArray[np.float64]
 
@@ -70,12 +70,12 @@ def stars_of(
     has_halo = kernel.spread.halo_per_sr is not None and len(strongest) > 0
     if has_halo:
         added += halos_of_sources(strongest, view, kernel, kernel.spread, weights=weights.tolist())
-        shares[1 : len(strongest) + 1] += weights[:, None] * _halo_share(kernel)
+        shares[1 : len(strongest) + 1] += weights[:, None] * halo_share(kernel)
     halos = int(np.count_nonzero(weights)) if has_halo else 0
     return Stars(added, shares[found.labels], halos, len(seen))
 
 
-def _halo_share(kernel: Kernel) -> Float:
+def halo_share(kernel: Kernel) -> Float:
     """(3,) share of a point's light that its ring holds."""
     ring = halo_table(kernel.spread)
     theta = np.linspace(0, ring.end, len(ring.values))

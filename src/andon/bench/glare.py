@@ -92,7 +92,7 @@ class _Ours:
             for name in ("picture", "seen")
         )
         source.write(np.dstack([self.picture, np.ones(self.view.shape, np.float32)]))
-        self.stage = WholePictureStage(self.gpu, source, self.target, self.plan)
+        self.stage = WholePictureStage(self.gpu, source, self.target, self.plan, finite=True)
 
     def draw(self) -> None:
         """The picture with its veil."""

@@ -15,7 +15,9 @@ from andon.glare.kernel import Kernel
 from andon.glare.model import Source
 from andon.glare.needles.determinants import needles_of
 from andon.glare.needles.model import NeedleModel, Needles, Which
+from andon.glare.needles.reference import draw as draw_needles
 from andon.glare.sources.find import background_luminance
+from andon.glare.sources.live import sources_of_bright
 from andon.glare.whole_picture.plan import WholePlan, plan_whole
 from andon.observer.presets import eye_of
 from andon.observer.spread.family import spread_function
@@ -23,6 +25,8 @@ from andon.observer.spread.model import Eye
 from andon.quantities import CameraFrame, photometric
 from andon.scene import Scene
 from andon.spaces import View
+
+Float = NDArray[np.float64]
 
 __all__ = ["SceneGlare", "glare_of", "with_clipped_light"]
 
@@ -60,6 +64,20 @@ class SceneGlare:
     def threshold_cd_m2(self) -> float:
         """Luminance from which a pixel belongs to a source."""
         return self.contrast * self.ambient_cd_m2
+
+    def sources(self, light: Float, view: View, /) -> list[Source]:
+        """The strongest sources in `light` (H, W, 3) cd/m²."""
+        return sources_of_bright(
+            photometric(light) > self.threshold_cd_m2,
+            lambda rows, columns: light[rows, columns],
+            view.solid_angles(),
+            view,
+            most=MOST_SOURCES,
+        )
+
+    def around_sources(self, light: Float, view: View, /) -> Float:
+        """(H, W, 3) cd/m² of needles around the sources in `light` (H, W, 3)."""
+        return draw_needles(self.needles_of(self.sources(light, view), view), view)
 
     def needles_of(self, sources: Sequence[Source], view: View, /) -> tuple[Needles, ...]:
         """Needles of each source, as the eye of a view sees them."""

@@ -18,6 +18,7 @@ ROW_ALIGNMENT = 256
 
 # format: (NumPy dtype, channels)
 _FORMATS: dict[str, tuple[str, int]] = {
+    "r8unorm": ("<u1", 1),
     "rgba8unorm": ("<u1", 4),
     "rgba16float": ("<f2", 4),
     "rgba32float": ("<f4", 4),

@@ -53,6 +53,7 @@ def rows() -> tuple[Row, ...]:
         caustic,
         gaze,
         glare_flicker,
+        glare_models,
         glass,
         glass_blur,
         glass_frame,
@@ -85,4 +86,5 @@ def rows() -> tuple[Row, ...]:
         *glass_frame.ROWS,
         *caustic.ROWS,
         *glare_flicker.ROWS,
+        *glare_models.ROWS,
     )

@@ -129,7 +129,7 @@ class _Ours:
 
     def likeness_with_reference(self) -> float:
         """Of the reference's veil."""
-        return self.likeness(reference.veil(self.picture, self.plan))
+        return self.likeness(reference.scattered(self.picture, self.plan).glare)
 
 
 def _against_fft(size: str, hfov_degrees: float) -> Duel:

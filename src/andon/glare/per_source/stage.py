@@ -145,11 +145,12 @@ class PerSourceStage:
         core = has_core(self.view, kernel) if settings.core is None else settings.core
         self._atlas.begin(kernel, core, settings.bloom)
         rows = self._atlas.rows_of([source.outline for source in sources])
-        records = [
-            self._record(source, kernel, row, self._halo_of(source, halo, share), settings, core)
-            for source, row, share in zip(sources, rows, shares, strict=True)
-        ]
-        self._plan(sources, np.concatenate([np.zeros(0, VEIL_SOURCE.dtype), *records]))
+        # Filled, not concatenated: that would pack the struct and lose its stride.
+        records = np.zeros(len(sources), VEIL_SOURCE.dtype)
+        for i, (source, row, share) in enumerate(zip(sources, rows, shares, strict=True)):
+            ring = self._halo_of(source, halo, share)
+            records[i] = self._record(source, kernel, row, ring, settings, core)[0]
+        self._plan(sources, records)
 
     def _halo_of(
         self, source: Source, halo: SpreadFunction | None, share: float

@@ -19,3 +19,7 @@ fn place_of(source: VeilSource, off: vec3f) -> TablePlace {
   let row = min(floor(beside.y), ROWS - 1.0);
   return TablePlace(m - beside.x, beside.x - source.focus, i32(source.row + row), beside.y - row);
 }
+
+fn whole_range() -> vec2u {
+  return whole.zw;
+}

@@ -74,7 +74,8 @@ class PerSourceStage:
         self._view = uniform_buffer(gpu, gbuffer.VIEW_RECORD.dtype.itemsize, "view")
         write_buffer(gpu, self._view, gbuffer.pack_view(view))
         self._sources = self._storage(capacity * VEIL_SOURCE.dtype.itemsize)
-        self._instances = self._storage(capacity * RINGS * 16)
+        self._instances = self._storage(capacity * RINGS * 8)
+        self._whole = uniform_buffer(gpu, 16, "sources in the whole picture")
         self._group = self._bindings()
         self._halo: SpreadFunction | None = None
         # Pipeline, first instance, how many.
@@ -82,7 +83,7 @@ class PerSourceStage:
         self._pipelines = {
             (shape, entry): self._pipeline(shape, entry)
             for shape in ("circle", "outline")
-            for entry in ("far_light", "near_light")
+            for entry in ("whole_light", "far_light", "near_light")
         }
 
     def _storage(self, size: int) -> Any:
@@ -99,6 +100,7 @@ class PerSourceStage:
             3: ("float array", self._atlas.tables.view),
             4: ("float", self._atlas.edges.view),
             5: ("float", self._halos.view),
+            6: ("uniform", self._whole),
         }
         return bind_group(self.gpu, resources, "glare")
 
@@ -113,7 +115,10 @@ class PerSourceStage:
         return self.gpu.device.create_render_pipeline(
             label=f"glare: {shape} {entry}",
             layout=pipeline_layout(self.gpu, [self._group]),
-            vertex={"module": module, "entry_point": "source_quad"},
+            vertex={
+                "module": module,
+                "entry_point": "fullscreen" if entry == "whole_light" else "source_quad",
+            },
             primitive={"topology": "triangle-list"},
             fragment={
                 "module": module,
@@ -189,25 +194,28 @@ class PerSourceStage:
         """Writes sources and instances: circles first, of them first those that are everywhere."""
         is_outline = np.array([len(s.outline.radii_radians) > 1 for s in sources], bool)
         is_local = records["ends"][:, FAR] < WHOLE
-        records = records[np.lexsort((is_local, is_outline))]
-        instances: list[tuple[int, int, int, int]] = []
-        self._draws = []
-        first = 0
-        for shape, count in (("circle", np.sum(~is_outline)), ("outline", np.sum(is_outline))):
-            of_shape = range(first, first + int(count))
-            whole = [i for i in of_shape if records["ends"][i, FAR] >= WHOLE]
-            far = [(whole[0], len(whole), FAR, 0)] if whole else []
-            far += [(i, 1, FAR, 0) for i in of_shape if i not in whole]
-            near = [(i, 1, ring, 0) for i in of_shape for ring in (NEAR, MIDDLE)]
-            near += [(i, 1, HALO, 0) for i in of_shape if np.any(records["halo"][i] > 0)]
+        order = np.lexsort((is_local, is_outline))
+        records, is_outline, is_local = records[order], is_outline[order], is_local[order]
+        instances: list[tuple[int, int]] = []
+        self._draws, whole = [], []
+        for shape, of_shape in (("circle", ~is_outline), ("outline", is_outline)):
+            everywhere = np.nonzero(of_shape & ~is_local)[0]
+            first = int(everywhere[0]) if len(everywhere) else 0
+            whole += [first, first + len(everywhere)]
+            if len(everywhere):
+                self._draws.append(((shape, "whole_light"), 0, 1))
+            ringed = of_shape & np.any(records["halo"] > 0, axis=1)
+            far = [(i, FAR) for i in np.nonzero(of_shape & is_local)[0]]
+            near = [(i, ring) for i in np.nonzero(of_shape)[0] for ring in (NEAR, MIDDLE)]
+            near += [(i, HALO) for i in np.nonzero(ringed)[0]]
             for entry, drawn in (("far_light", far), ("near_light", near)):
                 if drawn:
                     self._draws.append(((shape, entry), len(instances), len(drawn)))
                 instances += drawn
-            first += int(count)
         if len(records):
             write_buffer(self.gpu, self._sources, records)
             write_buffer(self.gpu, self._instances, np.array(instances, np.uint32))
+            write_buffer(self.gpu, self._whole, np.array(whole, np.uint32))
 
     def encode(self, encoder: Any, target: Texture) -> None:
         """Records the veil onto `target`, whose light stays."""
@@ -220,5 +228,5 @@ class PerSourceStage:
         vertices = 12 if self.view.projection == "latlong" else 6
         for pipeline, first, count in self._draws:
             render.set_pipeline(self._pipelines[pipeline])
-            render.draw(vertices, count, 0, first)
+            render.draw(3 if pipeline[1] == "whole_light" else vertices, count, 0, first)
         render.end()

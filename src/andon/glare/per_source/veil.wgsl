@@ -1,24 +1,29 @@
-// The veil and the halo of known sources, additive: one instance for each ring of each source, or for
-// several sources whose rings are the whole picture (reference.py).
+// The veil and the halo of known sources, additive (reference.py): one instance for each ring of each
+// source; those whose rings are the whole picture in one pass.
 
 //!import andon/glare/quads/quads.wgsl
 //!import andon/glare/per_source/constants.wgsl
 //!struct VeilSource
 
 const TURN: f32 = 6.28318530717959;
+const FAR: u32 = 2u;
 const HALO: u32 = 3u;
+// A ring that ends beyond this chord has no box.
+const WHOLE: f32 = 1.4;
 const LARGEST: f32 = 65504.0;
 
 @group(0) @binding(0) var<uniform> view: ViewRecord;
 @group(0) @binding(1) var<storage> sources: array<VeilSource>;
-// First source, how many, ring.
-@group(0) @binding(2) var<storage> instances: array<vec4u>;
+// Source, ring.
+@group(0) @binding(2) var<storage> instances: array<vec2u>;
 // Corners of a cell: at its row and column, its next column, and both of the next row. Layer 0 has
 // V·q², layer 1 radians from the outline.
 @group(0) @binding(3) var tables: texture_2d_array<f32>;
 // Edge at a step and the next one, row at both.
 @group(0) @binding(4) var edges: texture_2d<f32>;
 @group(0) @binding(5) var halos: texture_2d<f32>;
+// Of sources in the whole picture: first circle, the one after the last; the same of outlines.
+@group(0) @binding(6) var<uniform> whole: vec4u;
 
 // m − m0, m0 − f, and the row of the atlas.
 struct TablePlace {
@@ -32,18 +37,18 @@ struct TablePlace {
 
 struct SourceQuad {
   @builtin(position) position: vec4f,
-  @location(0) @interpolate(flat) drawn: vec3u,
+  @location(0) @interpolate(flat) drawn: vec2u,
 };
 
 @vertex fn source_quad(
   @builtin(vertex_index) vertex: u32,
   @builtin(instance_index) instance: u32,
 ) -> SourceQuad {
-  let drawn = instances[instance].xyz;
+  let drawn = instances[instance];
   let source = sources[drawn.x];
-  let end = source.ends[drawn.z];
+  let end = source.ends[drawn.y];
   var box = vec4f(0.0, 0.0, view.size);
-  if (end < 1.4 && drawn.y == 1u) {
+  if (end < WHOLE) {
     let cap = cap_box(source.direction, 2.0 * asin(0.5 * end));
     box = vec4f(floor(cap.xy) - 1.0, ceil(cap.zw) + 1.0);
     // Wider than a latlong picture it would meet itself beyond the seam.
@@ -86,15 +91,24 @@ fn veil_at(source: VeilSource, direction: vec3f) -> f32 {
   return value.x * value.y;
 }
 
-// One sample of a pixel, of as many sources as there are.
-@fragment fn far_light(quad: SourceQuad) -> @location(0) vec4f {
-  let direction = normalize(ray_planar(quad.position.xy));
+// One sample of a pixel: of all sources that are drawn in the whole picture (their number is a uniform,
+// so that records are read once for all pixels), or of one.
+@fragment fn whole_light(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+  let direction = normalize(ray_planar(pixel.xy));
+  let range = whole_range();
   var sum = vec3f(0.0);
-  for (var i = quad.drawn.x; i < quad.drawn.x + quad.drawn.y; i++) {
-    let source = sources[i];
-    sum += source.light * (veil_at(source, direction) * in_ring(source, direction, quad.drawn.z));
+  for (var i = range.x; i < range.y; i++) {
+    let veil = veil_at(sources[i], direction);
+    sum += sources[i].light * (veil * in_ring(sources[i], direction, FAR));
   }
   return vec4f(min(sum, vec3f(LARGEST)), 0.0);
+}
+
+@fragment fn far_light(quad: SourceQuad) -> @location(0) vec4f {
+  let direction = normalize(ray_planar(quad.position.xy));
+  let source = sources[quad.drawn.x];
+  let light = source.light * (veil_at(source, direction) * in_ring(source, direction, FAR));
+  return vec4f(min(light, vec3f(LARGEST)), 0.0);
 }
 
 // Sample k of n along a side, from the middle of the pixel (rings.py).
@@ -105,7 +119,7 @@ fn sample_offset(k: u32, n: f32) -> f32 {
 
 @fragment fn near_light(quad: SourceQuad) -> @location(0) vec4f {
   let source = sources[quad.drawn.x];
-  let ring = quad.drawn.z;
+  let ring = quad.drawn.y;
   let n = source.samples[ring];
   var sum = vec3f(0.0);
   for (var row = 0u; row < u32(n); row++) {

@@ -84,7 +84,8 @@ class Material:
     reflectance : (3,) diffuse reflectance ρ in [0, 1], linear Rec.709 (glTF base colour).
     texture : (h, w, 3) uint8 sRGB or float linear, multiplies `reflectance`; row 0 is v = 0.
     emissive_cd_m2 : (3,) luminance that the surface emits by itself.
-    metallic, roughness : [0, 1], kept for later stages.
+    metallic, roughness : [0, 1], of highlights.
+    metallic_stated : the file states `metallic` for the whole surface: no default, no texture.
     two_sided : bool, lit from both sides.
     extensions : glTF extensions as read, kept for later stages.
     """
@@ -97,6 +98,7 @@ class Material:
     roughness: float = 1.0
     two_sided: bool = True
     extensions: dict[str, Any] = field(default_factory=dict)
+    metallic_stated: bool = False
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from andon.cli import glare, glare_psf
+from andon.cli import glare, glare_komorebi, glare_psf
 
 __all__ = ["PICTURE", "glare_app"]
 
@@ -21,11 +21,11 @@ PICTURE = "picture"
 
 
 class _PictureFirst(TyperGroup):
-    """Takes what is no sub-command for the arguments of `PICTURE`, once there is one."""
+    """Takes what is no sub-command for the arguments of `PICTURE`."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         known = {*self.commands, *ctx.help_option_names}
-        if PICTURE in self.commands and args and args[0] not in known:
+        if args and args[0] not in known:
             args = [PICTURE, *args]
         return super().parse_args(ctx, args)
 
@@ -39,3 +39,4 @@ glare_app = typer.Typer(
 # In the order of ``andon glare --help``.
 glare_app.command(PICTURE)(glare.picture)
 glare_app.command("psf")(glare_psf.psf)
+glare_app.command("komorebi")(glare_komorebi.komorebi)

@@ -33,3 +33,8 @@ class Ambient:
         if self.illuminance_lux.ndim == 1:
             return self.illuminance_lux
         return np.nanmean(self.illuminance_lux, axis=(0, 1))
+
+    @property
+    def standing_lux(self) -> NDArray[np.float64]:
+        """(3,) what is left of `mean_lux` after dimming."""
+        return np.asarray(self.dimming) * self.mean_lux

@@ -42,5 +42,5 @@ def pack_ambient(ambient: Ambient, luminance_per_unit: float, /) -> NDArray[Any]
         dimming=ambient.dimming,
         units_per_cd_m2=1 / luminance_per_unit,
         inverse_lux=1 / ambient.illuminance_lux if constant else np.zeros(3),
-        object_lux=np.asarray(ambient.dimming) * ambient.mean_lux,
+        object_lux=ambient.standing_lux,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,7 +53,7 @@ def object_luminance(
 
     They stand in the mean of E0, dimmed, or in `standing_lux` (H, W, 3) where it is not NaN.
     """
-    standing = np.asarray(ambient.dimming) * ambient.mean_lux
+    standing = ambient.standing_lux
     if standing_lux is not None:
         standing = np.where(np.isnan(standing_lux), standing, standing_lux)
     received = np.maximum(standing + added_lux, 0)
@@ -76,14 +76,17 @@ def compose(
     lamps: Sequence[Lamp],
     /,
     standing_lux: Float | None = None,
+    mirror: Callable[[Float], Float] | None = None,
 ) -> Float:
     """Luminance (H, W, 3) in cd/m² of the whole picture.
 
-    `added_lux` (H, W, 3) is ΔE, 0 in holes; `standing_lux` as in `object_luminance`.
+    `added_lux` (H, W, 3) is ΔE, 0 in holes; `standing_lux` as in `object_luminance`; `mirror` adds
+    what virtual objects mirror to the picture of diffuse light.
     """
     real = frame.luminance_per_unit * relit_linear(frame, ambient, added_lux)
     virtual = object_luminance(surface, ambient, added_lux, standing_lux)
     luminance = np.where(surface.is_object[..., None], virtual, real)
+    luminance = luminance if mirror is None else mirror(luminance)
     return draw_lamps(luminance, surface, lamps)
 
 

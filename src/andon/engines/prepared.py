@@ -13,6 +13,7 @@ from andon.display.model import Exposure
 from andon.engines.checks import check_lamps
 from andon.engines.glare import SceneGlare, glare_of, with_clipped_light
 from andon.engines.glass import SceneGlass, glass_of
+from andon.engines.highlights import SceneHighlights, highlights_of
 from andon.engines.moment import Moment
 from andon.engines.photographless import (
     ambient_without_photograph,
@@ -88,6 +89,7 @@ class Prepared:
     probes : light that virtual objects stand in instead of E0, or None.
     glass : transparent bodies and what the eyes are focused on, or None.
     balls : those of them in whose shadow and caustic surfaces stand.
+    highlights : how virtual objects mirror, or None: nothing does.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -104,6 +106,7 @@ class Prepared:
     glass: SceneGlass | None = None
     balls: tuple[GlassBall, ...] = ()
     glare: SceneGlare | None = None
+    highlights: SceneHighlights | None = None
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
@@ -167,6 +170,7 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         glass=glass,
         balls=() if glass is None else glass.balls,
         glare=glare_of(scene, frames, np.asarray(ambient.dimming)) if frames else None,
+        highlights=highlights_of(scene, surface),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,18 @@ from andon.engines.glass import SceneGlass
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import lampless_pixels, lit_pixels
+from andon.glare.highlights.contrast import AmbientLevel
+from andon.glare.highlights.facets import Facets
+from andon.glare.highlights.reference import Mirrored, facing_lux, mirrored_picture
+from andon.glare.highlights.tiles import (
+    Highlight,
+    highlights_of_tiles,
+    light_tiles,
+    survey_tiles,
+    threshold_cd_m2,
+)
+from andon.glare.needles.reference import draw as draw_needles
+from andon.glare.sources.survey import survey
 from andon.glare.whole_picture import reference as whole_picture
 from andon.glass import reference as glass
 from andon.glass.backdrops.model import SceneOfView
@@ -25,6 +38,7 @@ from andon.glass.layers import Layered
 from andon.glass.model import GlassModel
 from andon.glass.screen import middle_pixels_per_radian
 from andon.glow import reference as glow
+from andon.lamps import AreaLamp, Lamp
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface import reference as surface
 from andon.transport.direct import reference as direct
@@ -52,6 +66,7 @@ class ReferenceEngine:
         self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
         self._layered: Layered | None = None
         self._glare: Luminance | None = None
+        self._mirrored: Mirrored | None = None
         self._blurred: tuple[float, GlassModel | None] = (0.0, None)
         self.maps_redrawn = 0
 
@@ -100,10 +115,60 @@ class ReferenceEngine:
         if probes is not None:
             standing = probes.standing_lux(seen, self.prepared.surface, moment.object_middles)
         added = np.asarray(light.lux, np.float64)
+        self._mirrored = self._mirror(seen, moment, standing)
+        mirror = None
+        if self._mirrored is not None:
+            mirror = partial(self._mirrored.over, seen.emitted_cd_m2)
         luminance = composite.compose(
-            frame, seen, self.prepared.ambient, added, moment.lamps, standing
+            frame, seen, self.prepared.ambient, added, moment.lamps, standing, mirror
         )
         return Luminance(luminance, self.prepared.photometry)
+
+    def _mirror(self, seen: Surface, moment: Moment, standing: Float | None) -> Mirrored | None:
+        """What virtual objects mirror."""
+        own, probes = self.prepared.highlights, self.prepared.probes
+        if own is None:
+            return None
+        lux = np.broadcast_to(self.prepared.ambient.standing_lux, (*seen.view.shape, 3))
+        lux = lux if standing is None else np.where(np.isnan(standing), lux, standing)
+        time = moment.time_seconds
+        return mirrored_picture(
+            seen,
+            own.at(time),
+            moment.lamps,
+            self._arrives,
+            lux,
+            time,
+            frozenset() if probes is None else probes.captured,
+        )
+
+    def find_highlights(
+        self, frame: CameraFrame, luminance: Luminance, moment: Moment, gate: float
+    ) -> tuple[AmbientLevel, list[Highlight]] | None:
+        """The ambient level and the highlights in what `compose` gave; None: nothing mirrors."""
+        own, found, view = self.prepared.highlights, self._mirrored, frame.view
+        if own is None or found is None:
+            return None
+        survey = survey_tiles(view, np.asarray(luminance.cd_m2, np.float64), found.lamps_cd_m2)
+        middles = moment.object_middles
+        lux = own.probe_lux(self.prepared.probes, self.prepared.surface, middles)
+        ambient = survey.ambient(lux, gate)
+        light = light_tiles(view, found.lamps_cd_m2, threshold_cd_m2(ambient, gate))
+        return ambient, highlights_of_tiles(light, survey, ambient, view, gate)
+
+    def read_highlights(self, frame: CameraFrame) -> Luminance | None:
+        """Mirrored lamps alone, of the view that was drawn last."""
+        found = self._mirrored
+        return None if found is None else Luminance(found.lamps_cd_m2, self.prepared.photometry)
+
+    def _arrives(self, lamp: Lamp, facets: Facets) -> Float:
+        """What of a lamp arrives at n facets, as `lamp_highlight` has it."""
+        place = facets.position, facets.ground
+        lifted = facets.position + self.prepared.surface.bias.object_m * facets.ground
+        if isinstance(lamp, AreaLamp):
+            return direct.seen_share(lamp, *place, lifted, self._rays)
+        lux = direct.arriving(lamp, *place, lifted, self._rays, self.prepared.balls)
+        return facing_lux(lamp, facets, lux)
 
     def glass_over(
         self, frame: CameraFrame, seen: Surface, luminance: Luminance, moment: Moment
@@ -191,10 +256,20 @@ class ReferenceEngine:
         own, word = self.prepared.glare, self.prepared.photometry
         if own is None:
             return luminance
-        light = np.maximum(np.nan_to_num(np.asarray(luminance.cd_m2, np.float64)), 0)
+        light = all_light = np.maximum(np.nan_to_num(np.asarray(luminance.cd_m2, np.float64)), 0)
+        through = self.prepared.exposure.see_through
+        if through is not None:
+            # Real light glares in the eye by itself.
+            unlit = composite.unlit_linear(frame, self.prepared.ambient)
+            real = frame.luminance_per_unit * ost.real_light(unlit, through)
+            light = np.maximum(all_light - real, 0)
         whole = whole_picture.scattered(light, own.plans[frame.view.name])
-        self._glare = Luminance(whole.glare, word)
-        return Luminance(whole.picture, word)
+        found = own.finder(frame.view).find(survey(light), lambda y, x: light[y, x])
+        added = whole.glare + draw_needles(own.needles_of(found, frame.view), frame.view)
+        self._glare = Luminance(added, word)
+        if through is not None:
+            return Luminance(all_light + added, word)
+        return Luminance(whole.picture - whole.glare + added, word)
 
     def read_glare(self, frame: CameraFrame) -> Luminance | None:
         """What glare added to the view that was drawn last."""

@@ -19,9 +19,11 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.glare.cleaning import Cleaned, cleaned
 from andon.glare.kernel import Kernel
+from andon.glare.needles.model import Which
 from andon.glare.numbers.measure import GlareNumbers, measured
-from andon.glare.numbers.veil import veil_towards
+from andon.glare.scatter import EngineName, scatter_all, scatter_sources
 from andon.glare.sources.find import FoundSources, find_sources
+from andon.glare.stars import stars_of
 from andon.observer.spread.model import Eye, SpreadFunction
 from andon.quantities import Photometry
 from andon.spaces import View
@@ -44,8 +46,9 @@ class GlareResult:
     veil : (H, W, 3) of `glare` what is scattered evenly: without halo and needles.
     found : bright sources, from the strongest to the weakest.
     numbers : veil at the gaze, TI, UGR, DGP.
-    share : k, of each point's light that became veil.
-    view, eye, model, renderer, photometry : as rendered.
+    share : k, of the picture's light that became veil.
+    stars : how many sources have a halo, and how many have needles.
+    view, eye, model, renderer, engine, photometry : as rendered.
     pixels : how many pixels were no light, and where.
     """
 
@@ -55,10 +58,12 @@ class GlareResult:
     found: FoundSources
     numbers: GlareNumbers
     share: float
+    stars: tuple[int, int]
     view: View
     eye: Eye
     model: SpreadFunction
     renderer: str
+    engine: str
     photometry: Photometry
     pixels: Cleaned
 
@@ -77,7 +82,10 @@ def glare_of_picture(
     model: str | SpreadFunction = "cie135",
     *,
     renderer: Renderer = "auto",
-    engine: Literal["auto", "gpu", "reference"] = "auto",
+    engine: EngineName = "auto",
+    with_stars: bool = True,
+    seed: int = 0,
+    which: Which = "mono",
     gaze: NDArray[np.float64] | None = None,
     photometry: Photometry = "absolute",
     clipped: NDArray[np.bool_] | None = None,
@@ -94,6 +102,8 @@ def glare_of_picture(
     renderer : ``whole-picture`` scatters all light, ``per-source`` that of the sources found;
         ``auto`` is the whole picture.
     engine : ``auto`` takes the GPU where there is an adapter.
+    with_stars : halo and needles around sources 40 times brighter than the ambient luminance.
+    seed, which : observer and eye, whose needles they are.
     gaze : (3,) camera frame, where the numbers are taken; None: straight ahead.
     photometry : ``relative`` where the picture is not calibrated.
     clipped : (H, W) bool, pixels at the white of the camera.
@@ -117,21 +127,31 @@ def glare_of_picture(
     kernel = Kernel(spread)
     ahead = AHEAD if gaze is None else _unit(gaze)
     found = find_sources(pixels.light, view, clipped=clipped)
-    picture, glare = _scattered(pixels.light, view, kernel)
+    light = pixels.light
+    if renderer == "per-source":
+        spread_out = scatter_sources(light, view, kernel, found)
+    else:
+        spread_out = scatter_all(light, view, kernel, engine)
+    stars = stars_of(found, eye, view, kernel, seed=seed, which=which) if with_stars else None
+    picture, glare = spread_out.picture, spread_out.veil
+    if stars is not None:
+        picture = picture + stars.added - stars.taken * light
+        glare = glare + stars.added
     if shows is not None:
         picture, glare = (np.where(shows[..., None], part, 0) for part in (picture, glare))
-    numbers = measured(pixels.light, view, kernel, ahead, photometry)
     return GlareResult(
         picture,
         glare,
-        glare,
+        spread_out.veil,
         found,
-        numbers,
-        kernel.share,
+        measured(light, view, kernel, ahead, photometry),
+        spread_out.share,
+        (0, 0) if stars is None else (stars.halos, stars.needles),
         view,
         eye,
         spread,
-        "whole-picture",
+        "per-source" if renderer == "per-source" else "whole-picture",
+        spread_out.engine,
         photometry,
         pixels,
     )
@@ -151,9 +171,3 @@ def _unit(gaze: NDArray[np.float64]) -> Float:
     if direction.shape != (3,) or not np.isfinite(length) or length == 0:
         raise InputError("must be three numbers, not all 0", field="gaze")
     return direction / length
-
-
-def _scattered(light: Float, view: View, kernel: Kernel) -> tuple[Float, Float]:
-    directions = view.directions().reshape(-1, 3)
-    veil = veil_towards(directions, light, view, kernel).reshape(light.shape)
-    return (1 - kernel.share) * light + veil, veil

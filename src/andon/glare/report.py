@@ -124,6 +124,9 @@ def _model(result: GlareResult) -> dict[str, Any]:
         "valid_degrees": list(result.model.valid_degrees),
         "scattered_share": rounded(result.share),
         "renderer": result.renderer,
+        "engine": result.engine,
+        "sources_with_halo": result.stars[0],
+        "sources_with_needles": result.stars[1],
     }
 
 

@@ -47,7 +47,10 @@ def color_attachment(view: Any, *, load: bool = False) -> dict[str, Any]:
 
 
 class FullscreenPass:
-    """One fragment entry point over a whole picture; `groups` are bind groups 0, 1, …"""
+    """One fragment entry point over a whole picture; `groups` are bind groups 0, 1, …
+
+    `blend` is that of all targets, or of each.
+    """
 
     def __init__(
         self,
@@ -59,12 +62,16 @@ class FullscreenPass:
         *,
         structs: Mapping[str, HostStruct] | None = None,
         variants: Mapping[str, str] | None = None,
-        blend: Mapping[str, Any] | None = None,
+        blend: Mapping[str, Any] | Sequence[Mapping[str, Any] | None] | None = None,
     ) -> None:
         self.gpu, self.groups = gpu, tuple(groups)
         self.label = f"{path}:{entry_point}"
         module = shader_module(gpu, path, structs, variants)
-        targets = [{"format": f, **({"blend": blend} if blend else {})} for f in target_formats]
+        blends = [blend] * len(target_formats) if isinstance(blend, Mapping | None) else blend
+        targets = [
+            {"format": name, **({"blend": own} if own else {})}
+            for name, own in zip(target_formats, blends, strict=True)
+        ]
         self.pipeline = gpu.device.create_render_pipeline(
             label=self.label,
             layout=pipeline_layout(gpu, groups),
@@ -74,12 +81,22 @@ class FullscreenPass:
         )
 
     def encode(
-        self, encoder: Any, targets: Sequence[Any], groups: Sequence[BindGroup] | None = None
+        self,
+        encoder: Any,
+        targets: Sequence[Any],
+        groups: Sequence[BindGroup] | None = None,
+        *,
+        keep_first: bool = False,
     ) -> None:
-        """Records the pass: `targets` are texture views, `groups` stand in for the pass's own."""
-        render = encoder.begin_render_pass(
-            label=self.label, color_attachments=[color_attachment(view) for view in targets]
-        )
+        """Records the pass: `targets` are texture views, `groups` stand in for the pass's own.
+
+        With `keep_first` the first target is drawn over, not cleared.
+        """
+        attachments = [
+            color_attachment(view, load=keep_first and number == 0)
+            for number, view in enumerate(targets)
+        ]
+        render = encoder.begin_render_pass(label=self.label, color_attachments=attachments)
         render.set_pipeline(self.pipeline)
         for index, bound in enumerate(groups or self.groups):
             render.set_bind_group(index, bound.group)

@@ -39,7 +39,14 @@ from andon.lamps.areas import MeshLamp, PolygonLamp
 from andon.lamps.polygons import vector_area
 from andon.lamps.triangles import WELD, shared_edges, triangle_areas, unit_normals, welded
 
-__all__ = ["TEXTURE_CELLS", "FacetEdges", "mesh_edges", "polygon_edges", "textured_edges"]
+__all__ = [
+    "TEXTURE_CELLS",
+    "FacetEdges",
+    "lamp_edges",
+    "mesh_edges",
+    "polygon_edges",
+    "textured_edges",
+]
 
 Float = NDArray[np.float64]
 
@@ -70,6 +77,20 @@ class FacetEdges:
     right_plane: Float
     left_luminance_cd_m2: Float
     right_luminance_cd_m2: Float
+
+
+def lamp_edges(lamp: PolygonLamp | MeshLamp, /) -> FacetEdges:
+    """The edges of a lamp that has corners: of a luminous picture those of its cells."""
+    if isinstance(lamp, MeshLamp):
+        return mesh_edges(lamp)
+    outline = polygon_edges(lamp)
+    if lamp.texture is None:
+        return outline
+    a, b, weight = textured_edges(lamp.vertices_m, lamp.texture)
+    left = np.tile(outline.left_plane[0], (len(a), 1))
+    right = np.tile(outline.right_plane[0], (len(a), 1))
+    light = weight * lamp.luminance_cd_m2
+    return FacetEdges(a, b, left, right, light, light * float(lamp.two_sided))
 
 
 def polygon_edges(lamp: PolygonLamp, /) -> FacetEdges:

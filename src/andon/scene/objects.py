@@ -11,7 +11,9 @@ from pydantic import Field, model_validator
 
 from andon.quaternions import rotation_matrices
 from andon.scene.base import (
+    Count,
     Fraction,
+    FractionTriple,
     Name,
     NonNegative,
     NonNegativeTriple,
@@ -24,7 +26,7 @@ from andon.scene.base import (
 )
 from andon.scene.geometry import Direction, Transform, UnitQuaternion
 
-__all__ = ["Background", "Glass", "ObjectKey", "SceneObject"]
+__all__ = ["Background", "Glass", "ObjectKey", "SceneObject", "Water"]
 
 
 class Placed(Table):
@@ -87,6 +89,42 @@ class ObjectKey(Table):
         return self
 
 
+class Water(Table):
+    """A level surface of water, rippled. Its mesh is flat; +Y is up."""
+
+    index: Annotated[float, Field(gt=1, le=3)] = Field(
+        default=1.333,
+        description="Refractive index, 1…3.",
+    )
+    slope: Annotated[float, Field(ge=0, le=0.5)] = Field(
+        default=0.06,
+        description="Of the ripples, root mean square; 0: a mirror. Wind of 1, 5 and 10 m/s gives "
+        "0.09, 0.17 and 0.23 on the sea (Cox and Munk).",
+    )
+    wavelength_m: tuple[Positive, Positive] = Field(
+        default=(0.08, 1.5),
+        description="Shortest and longest ripple, metres.",
+    )
+    wind_degrees: float = Field(
+        default=0.0,
+        description="Where the wind blows to: 0 is +X, 90 is +Z.",
+    )
+    waves: Annotated[int, Field(ge=1, le=64)] = Field(
+        default=32,
+        description="How many ripples are added up, 1…64.",
+    )
+    seed: Count | None = Field(
+        default=None,
+        description="Of their phases and directions; default: from scene.seed.",
+    )
+
+    @model_validator(mode="after")
+    def _check_wavelengths(self) -> Water:
+        if not self.wavelength_m[0] <= self.wavelength_m[1]:
+            raise refusal("must rise", key="wavelength_m")
+        return self
+
+
 class SceneObject(Placed):
     """A virtual object."""
 
@@ -129,6 +167,46 @@ class SceneObject(Placed):
         default=True,
         description="Takes direct light from [[lamp]].",
     )
+    highlights: Literal["auto", "cook-torrance", "anisotropic", "phong", "none"] = Field(
+        default="auto",
+        description="How lamps are mirrored. auto: Cook–Torrance on materials whose file states a "
+        "metallicFactor above 0, else none; cook-torrance and anisotropic: GGX on all of it; "
+        "phong: the paper's I·I_s·cosⁿα, normalised; none: diffuse.",
+    )
+    metallic: Fraction | None = Field(
+        default=None,
+        description="Instead of the file's metallicFactor (where the file states none: 0).",
+    )
+    roughness: Fraction | None = Field(
+        default=None,
+        description="Instead of the file's roughnessFactor.",
+    )
+    anisotropy: Fraction = Field(
+        default=0.8,
+        description="Of anisotropic: 0 as cook-torrance, 1 brushed smooth along one direction; "
+        "KHR_materials_anisotropy's strength goes before it.",
+    )
+    brush: Direction = Field(
+        default=(0.0, 1.0, 0.0),
+        description="Of anisotropic: an axis of the object that scratches follow or go round.",
+    )
+    brush_around: bool = Field(
+        default=False,
+        description="Of anisotropic: scratches go round the axis, as turned metal has them.",
+    )
+    phong_exponent: Annotated[float, Field(ge=1, le=100000)] = Field(
+        default=200.0,
+        description="Of phong: n, 1…100000.",
+    )
+    phong_reflectance: FractionTriple | None = Field(
+        default=None,
+        description="Of phong: I_s, share of light in the lobe; default: as cook-torrance straight "
+        "ahead.",
+    )
+    water: Water | None = Field(
+        default=None,
+        description="[object.water]: the object is a level surface of water.",
+    )
     key: tuple[ObjectKey, ...] = Field(
         default=(),
         description="[[object.key]]: keyframes, rising times. What no key states is the object's "
@@ -140,6 +218,8 @@ class SceneObject(Placed):
         for index, (before, after) in enumerate(pairwise(self.key), start=1):
             if not after.time_seconds > before.time_seconds:
                 raise refusal("must be later than the key before", key=f"key[{index}].time_seconds")
+        if self.water is not None and self.highlights != "auto":
+            raise refusal("belongs to things that are not water", key="highlights")
         if self.key and self.transform is not None:
             remedy = "state position, rotation_xyzw and scale"
             raise refusal("excludes keyframes", key="transform", remedy=remedy)

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.quantities import Geometry, merged
+from andon.quantities import Geometry, Material, merged
 from andon.surface.movers import Mover
 from andon.surface.occluder import Occluder
 from andon.surface.placing import middle_of
@@ -47,6 +47,7 @@ class ObjectInfo:
     triangles : how many it has.
     lit_by_probes : takes indirect light from probes, instead of E0.
     lit_by_lamps : takes direct light from lamps.
+    entry : its number among the scene's objects; −1: it is none of them.
     """
 
     name: str
@@ -55,6 +56,7 @@ class ObjectInfo:
     triangles: int
     lit_by_probes: bool = True
     lit_by_lamps: bool = True
+    entry: int = -1
 
 
 @dataclass(frozen=True)
@@ -107,12 +109,17 @@ class SurfaceModel:
         """The rows of `objects_table` that belong to `movers`."""
         return self.objects_table[len(self.objects_table) - len(self.movers) :]
 
+    @property
+    def object_materials(self) -> tuple[Material, ...]:
+        """(slots,) the materials of virtual objects."""
+        drawn = [self.objects] if len(self.objects.triangles) else []
+        drawn += [mover.geometry for mover in self.movers]
+        return tuple(material for part in drawn for material in part.materials)
+
     @cached_property
     def emitted_cd_m2(self) -> NDArray[np.float64]:
         """(slots, 3) what the materials of virtual objects emit."""
-        drawn = [self.objects] if len(self.objects.triangles) else []
-        drawn += [mover.geometry for mover in self.movers]
-        emitted = [material.emissive_cd_m2 for part in drawn for material in part.materials]
+        emitted = [material.emissive_cd_m2 for material in self.object_materials]
         return np.array(emitted, float).reshape(-1, 3)
 
     @property

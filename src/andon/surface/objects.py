@@ -30,6 +30,7 @@ class _Read:
     """An object as read: what it is when it stands still, or what moves it."""
 
     name: str
+    index: int
     entry: SceneObject
     geometry: Geometry
     mover: Mover | None
@@ -79,15 +80,15 @@ def _read(scene: Scene, index: int) -> _Read:
         play = Play(mesh, clip, start, speed, entry.loop)
         geometry = with_linear_textures(mesh.geometry)
         mover = Mover(geometry, placement, play, casts_shadow=entry.casts_shadow)
-        return _Read(name, entry, mover.geometry, mover, ())
+        return _Read(name, index, entry, mover.geometry, mover, ())
     placed = np.eye(4) if entry.key else entry.world_from_object()
     geometry, file = read_geometry(scene, path, placed)
     still = 'unless its animation is stated: animation = "0" plays the first'
     notes = rest_note(path, file, *([still] if "animation" in file.at_rest else []))
     if not entry.key:
-        return _Read(name, entry, geometry, None, notes)
+        return _Read(name, index, entry, geometry, None, notes)
     mover = Mover(geometry, placement, casts_shadow=entry.casts_shadow)
-    return _Read(name, entry, mover.geometry, mover, notes)
+    return _Read(name, index, entry, mover.geometry, mover, notes)
 
 
 def _clip(scene: Scene, field: str, mesh: AnimatedMesh, name: str) -> Clip:
@@ -119,6 +120,7 @@ def _table(scene: Scene, read: list[_Read]) -> tuple[ObjectInfo, ...]:
             len(one.geometry.triangles),
             one.entry.lit_by_probes,
             one.entry.lit_by_lamps,
+            one.index,
         )
         for one, start, count in zip(read, starts, counts, strict=False)
     )

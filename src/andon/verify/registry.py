@@ -53,6 +53,8 @@ def rows() -> tuple[Row, ...]:
         caustic,
         gaze,
         glare_flicker,
+        glare_models,
+        glare_needles,
         glass,
         glass_blur,
         glass_frame,
@@ -85,4 +87,6 @@ def rows() -> tuple[Row, ...]:
         *glass_frame.ROWS,
         *caustic.ROWS,
         *glare_flicker.ROWS,
+        *glare_models.ROWS,
+        *glare_needles.ROWS,
     )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from andon.errors import InputError
+from andon.observer.spread import cie146
 from andon.observer.spread.family import scattered_share, spread_function
 from andon.observer.spread.model import Eye
 from comparison import assert_agree
@@ -44,8 +44,18 @@ def test_other_names():
         assert_agree(bloom(name, ANGLES), bloom(known, ANGLES))
 
 
-@pytest.mark.parametrize("theta", [-0.1, 180.1, np.nan, np.inf, [1, -1]])
-@pytest.mark.parametrize("name", ["cie135", "cie146-general"])
-def test_angles_that_are_none(name, theta):
-    with pytest.raises(InputError, match="theta_degrees: must be 0…180°"):
-        bloom(name, theta)
+def test_values_of_cie_146():
+    """At 1° of an observer of no age: 10 + 5 + 0.1p + 0.0025p; 15; 10."""
+    assert bloom("cie146-general", 1.0, age_years=0, pigment=1.0) == pytest.approx(15.1025)
+    assert bloom("cie146-small-angle", 1.0, age_years=0) == pytest.approx(15)
+    assert bloom("cie146-stiles-holladay", 1.0, age_years=0) == pytest.approx(10)
+    assert bloom("cie146-stiles-holladay", 2.0, age_years=70) == pytest.approx(5)
+    assert cie146.ageing(62.5) == 2
+
+
+def test_the_small_angle_equation_is_the_general_one_nearby():
+    theta = np.geomspace(0.1, 3, 50)
+    ratio = bloom("cie146-small-angle", theta) / bloom("cie146-general", theta)
+    assert (ratio <= 1).all()
+    assert ratio.min() > 0.94
+    assert bloom("cie146-small-angle", 30.0) < 0.85 * bloom("cie146-general", 30.0)

@@ -1,9 +1,10 @@
-"""The kernel as a mixture of Gaussians of the chord: ``K(θ) ≈ ∫ W(σ)·G_σ dlnσ``.
+"""The kernel as a mixture of round bumps over the chord: ``K(θ) ≈ K₀ + ∫ W(σ)·G_σ dlnσ``.
 
-G_σ has unit energy on the sphere, so W is the share of a point's light per ln σ. All spread
+G_σ, of σ radians and unit energy, is the point-spread function of a pyramid's level, averaged over
+places and azimuths: all but a Gaussian. W is the share of a point's light per ln σ. All spread
 functions fall by powers between −1 and −3, which are such mixtures; W = exp(u) is found by least
-squares of ln K over 0.1°…110° with a penalty on the second differences of u, so it is smooth and
-positive. A pyramid samples W at a few σ: a ratio of 2 makes a ripple of 0.6 % (θ⁻²) to 1.5 % (θ⁻³).
+squares of ln K with a penalty on the second differences of u, so it is smooth and positive. A
+pyramid samples W at a few σ: a ratio of 2 makes a ripple of 0.6 % (θ⁻²) to 1.5 % (θ⁻³).
 """
 
 from __future__ import annotations
@@ -15,24 +16,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.glare.kernel import Kernel
+from andon.glare.whole_picture.splines import level_profile, sigma_cells
 
-__all__ = ["Mixture", "chord_gaussian", "near_share"]
+__all__ = ["Mixture", "bump"]
 
 Float = NDArray[np.float64]
 
 # σ of the mixture, and how many steps an octave has.
 SIGMA_DEGREES = (0.03, 64.0)
 PER_OCTAVE = 4
-# Angles of the fit; what fades beyond 90° is left to the far part, which has it exactly.
-FIT_DEGREES = (0.1, 80.0)
+# Angles of the fit; what comes beyond is left to the far part, which has it exactly.
+FIT_DEGREES = (0.1, 40.0)
+# K₀, in units of the least value within 90°: skirts go over into a constant.
+FLOOR = 0.95
 # Penalty of a second difference of 1 against a relative error of 1 of the kernel.
 SMOOTHNESS = 0.03
 ROUNDS = 30
+# The bump as a table over chord/σ, to where it ends.
+STEPS, REACH_SIGMAS = 512, 7.0
 
 
-def chord_gaussian(chord: Float, sigma: Float, /) -> Float:
-    """Density in sr⁻¹ of a Gaussian of σ radians at a chord; its integral over the sphere is 1."""
-    return np.exp(-(chord**2) / (2 * sigma**2)) / (2 * np.pi * sigma**2 * -np.expm1(-2 / sigma**2))
+def _table() -> tuple[Float, Float]:
+    sigma = sigma_cells(64, 0)
+    places = np.linspace(0, REACH_SIGMAS, STEPS + 1)
+    return places, level_profile(places * sigma) * sigma**2
+
+
+PLACES, DENSITY = _table()
+
+
+def bump(chord: Float, sigma: Float, /) -> Float:
+    """(...) sr⁻¹ of a level's bump of σ radians at a chord; its energy in a chart is 1."""
+    return np.interp(chord / sigma, PLACES, DENSITY) / sigma**2
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,34 +58,42 @@ class Mixture:
     ----------
     log_sigma : (n,) evenly spaced, σ in radians.
     share : (n,) W > 0, share of the light per ln σ.
+    floor : K₀ in sr⁻¹, the same at all angles.
     """
 
     log_sigma: Float
     share: Float
+    floor: float
 
     @staticmethod
     def of(kernel: Kernel, /) -> Mixture:
         """The mixture of a kernel."""
-        ends = np.log(np.radians(SIGMA_DEGREES))
-        count = round((ends[1] - ends[0]) / math.log(2) * PER_OCTAVE)
-        log_sigma = ends[0] + np.arange(count + 1) * (math.log(2) / PER_OCTAVE)
-        theta = np.exp(np.linspace(*np.log(np.radians(FIT_DEGREES)), 4 * count))
+        least, most = (math.log2(math.radians(end)) for end in SIGMA_DEGREES)
+        count = round((most - least) * PER_OCTAVE)
+        log_sigma = (least + np.arange(count + 1) / PER_OCTAVE) * math.log(2)
+        theta = np.radians(np.geomspace(*FIT_DEGREES, 4 * count))
         bumps = _bumps(theta, log_sigma)
-        return Mixture(log_sigma, _fitted(bumps, kernel.per_sr(theta, core=True), log_sigma))
+        skirt = kernel.spread.bloom_per_sr(np.linspace(FIT_DEGREES[1], 90, 51))
+        floor = FLOOR * float(skirt.min())
+        wanted = kernel.per_sr(theta, core=True) - floor
+        return Mixture(log_sigma, _fitted(bumps, wanted, log_sigma), floor)
 
-    def per_sr(self, theta_radians: Float, /, weight: Float | float = 1.0) -> Float:
-        """(...) the mixture at angles (...), in sr⁻¹, each σ's share times `weight` (n,)."""
-        return _bumps(theta_radians, self.log_sigma) @ (self.share * weight)
+    def per_sr(self, theta_radians: Float, weight: Float | float = 1.0, /) -> Float:
+        """(...) the integral at angles (...), in sr⁻¹, each σ's share times `weight` (n,).
+
+        With weights (m, n) the result is (..., m).
+        """
+        return _bumps(theta_radians, self.log_sigma) @ (self.share * weight).T
 
 
 def _bumps(theta: Float, log_sigma: Float) -> Float:
     """(..., n) what a share of 1 per ln σ at each of `log_sigma` alone makes at θ."""
     step = log_sigma[1] - log_sigma[0]
-    return step * chord_gaussian(2 * np.sin(theta / 2)[..., None], np.exp(log_sigma))
+    return step * bump(2 * np.sin(theta / 2)[..., None], np.exp(log_sigma))
 
 
 def _fitted(bumps: Float, wanted: Float, log_sigma: Float) -> Float:
-    # Gauss–Newton on u = ln W from W ~ 0.05/σ, near that of θ^−2.5.
+    # Gauss–Newton on u = ln W from W ~ σ^−½, that of θ^−2.5.
     u = -2 - 0.5 * (log_sigma - log_sigma[0])
     rough = SMOOTHNESS * len(wanted) ** 0.5 * np.diff(np.eye(len(u)), 2, axis=0)
     for _ in range(ROUNDS):
@@ -81,9 +104,3 @@ def _fitted(bumps: Float, wanted: Float, log_sigma: Float) -> Float:
         step = np.linalg.lstsq(slope, miss, rcond=None)[0]
         u = u + np.clip(step, -1, 1)
     return np.exp(u)
-
-
-def near_share(log_sigma: Float, span: tuple[float, float], /) -> Float:
-    """(n,) χ: what the pyramid has of each σ, from 1 to 0 between two σ in radians; the rest is far."""
-    along = np.clip((log_sigma - math.log(span[0])) / math.log(span[1] / span[0]), 0, 1)
-    return 1 - along**2 * (3 - 2 * along)

@@ -5,7 +5,7 @@
     pixels ──reduce──▶ blocks ──spline──▶ D₁ ─▶ D₂ ─▶ … ─▶ D_T        light, [1 3 3 1]/8 a step
                                           │     │          │ far level F: M·D_F, true angles
     pixels ◀─expand── blocks ◀──spline── A₁ ◀─ A₂ ◀─ … ◀─ A_T         veil, [3 1]/4 a step
-                                        A_l = √w_l·P(√w_l·D_l) + expand(A_{l+1})
+                                        A_l = Σ √w·P(√w·D_l) + expand(A_{l+1})
 
 Conventions, for the light and the veil of each channel:
 
@@ -15,8 +15,10 @@ Conventions, for the light and the veil of each channel:
   of level 1 around it, B the quadratic B-spline; `charts.Chart.array_place` says where it lies;
 - levels hold D on the same scale: reduce averages, expand interpolates. Cells 2p and 2p + 1 of one
   level lie in cell p of the next; both have `MARGIN` cells more on each side, and zeros beyond;
-- √w_l of a cell is `WholePlan.root`, a function of the chart's scale a there. P is separable,
-  `splines.taps(level)` along each axis, of sum 1: the middle tap and those to one side;
+- the sum is over the level's rungs, one filter P each (two from level 3 on, none at the top where
+  only the far part is): √w of a cell is `WholePlan.root`, a function of the chart's scale a there,
+  and P is separable, `splines.filters(level)[rung.which]` along each axis, of sum 1: the middle
+  tap and those to one side;
 - far: A_F += M·D_F from `light_cells` to `receiving_cells`, before A_F is expanded;
 - veil of a block = Σ charts share(direction)·Σ B(u)·B(v)·A₁;
 - what stays in a pixel is `1 − resolved(a)`, a of the chart that it is read from (of the larger
@@ -25,7 +27,6 @@ Conventions, for the light and the veil of each channel:
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,16 +35,16 @@ from numpy.typing import NDArray
 from andon.glare.kernel import Kernel
 from andon.glare.whole_picture.charts import Chart, charts_of
 from andon.glare.whole_picture.far import Far, far_level, plan_far
-from andon.glare.whole_picture.mixture import Mixture, near_share
-from andon.glare.whole_picture.splines import sigma_cells
+from andon.glare.whole_picture.ladder import Ladder, Rung
+from andon.glare.whole_picture.mixture import Mixture
 from andon.spaces import View
 
 __all__ = ["WholePlan", "plan_whole"]
 
 Float = NDArray[np.float64]
 
-# χ begins to fall at so many coarse cells on the axis, and ends at so many times as much.
-FAR_CELLS = (1.0, 4.0)
+# χ begins to fall at a σ of so many coarse cells, and ends at so many.
+FAR_CELLS = (0.8, 3.2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,19 +55,14 @@ class WholePlan:
     ----------
     view, kernel : what it is for.
     charts : one, or two that share the sphere.
-    levels : T, the last level.
-    log_sigma : (n,) evenly spaced ln σ, σ in radians.
-    level_share : (n,) share of a point's light that a level of that σ spreads; linear in between,
-        held beyond the ends.
+    ladder : the filters of the levels and their shares of light.
     far : the rest, between all pairs of coarse cells.
     """
 
     view: View
     kernel: Kernel
     charts: tuple[Chart, ...]
-    levels: int
-    log_sigma: Float
-    level_share: Float
+    ladder: Ladder
     far: Far
 
     @property
@@ -74,21 +70,19 @@ class WholePlan:
         """Whether two charts share the sphere."""
         return len(self.charts) == 2
 
-    def sigma(self, chart: Chart, level: int, scale: Float, /) -> Float:
-        """(...) σ in radians of a level where the chart's scale is a."""
-        return sigma_cells(level) * 2 ** (level - 1) * chart.cell * scale
+    @property
+    def levels(self) -> int:
+        """T, the last level that is needed: at least the far part's."""
+        return max(self.ladder.levels, self.far.level)
 
-    def root(self, chart: Chart, level: int, scale: Float, /) -> Float:
-        """(...) √w of a level where the chart's scale is a, units per radian."""
-        return np.sqrt(self._share(self.sigma(chart, level, scale))) / scale
+    def root(self, rung: Rung, scale: Float, /) -> Float:
+        """(...) √w of a rung where the chart's scale is a, units per radian."""
+        return np.sqrt(self.ladder.share_of(rung, scale)) / scale
 
-    def resolved(self, chart: Chart, scale: Float, /) -> Float:
+    def resolved(self, scale: Float, /) -> Float:
         """(...) share of light that leaves its place, where the chart's scale is a."""
-        near = (self._share(self.sigma(chart, n, scale)) for n in range(1, self.levels + 1))
-        return sum(near, np.full_like(scale, self.far.share))
-
-    def _share(self, sigma: Float) -> Float:
-        return np.interp(np.log(sigma), self.log_sigma, self.level_share)
+        near = (self.ladder.share_of(rung, scale) for rung in self.ladder.rungs)
+        return sum(near, np.interp(scale, self.far.scales, self.far.shares))
 
 
 def plan_whole(view: View, kernel: Kernel, /) -> WholePlan:
@@ -96,18 +90,7 @@ def plan_whole(view: View, kernel: Kernel, /) -> WholePlan:
     charts = charts_of(view)
     mixture = Mixture.of(kernel)
     level = far_level(charts)
-    # χ falls from 1 to 0 between these, absolute angles; see `near_share`.
-    start = charts[0].cell * 2 ** (level - 1) * FAR_CELLS[0]
-    span = (start, start * FAR_CELLS[1])
-    near = near_share(mixture.log_sigma, span)
-    least = min(float(c.scale(c.cell_directions(level)).min()) for c in charts)
-    last = math.log2(span[1] / (sigma_cells(2) * charts[0].cell * least))
-    return WholePlan(
-        view,
-        kernel,
-        charts,
-        max(level, 1 + math.floor(last)),
-        mixture.log_sigma,
-        mixture.share * near * math.log(2),
-        plan_far(charts, level, kernel, mixture, near),
-    )
+    cell = charts[0].cell
+    start, end = (cell * 2 ** (level - 1) * cells for cells in FAR_CELLS)
+    ladder = Ladder.of(view, mixture, cell, (start, end))
+    return WholePlan(view, kernel, charts, ladder, plan_far(charts, level, kernel, mixture, ladder))

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.glare.whole_picture.charts import MARGIN, Chart, block_directions, block_shape
+from andon.glare.whole_picture.charts import MARGIN, Chart, block_directions
 from andon.glare.whole_picture.plan import WholePlan
-from andon.glare.whole_picture.splines import spline_weights, taps
+from andon.glare.whole_picture.splines import filters, spline_weights
 
 __all__ = ["Scattered", "scattered", "veil"]
 
@@ -24,9 +24,9 @@ class Scattered:
 
     Attributes
     ----------
-    picture : (H, W, 3) cd/m², (1 − k)·L + veil.
-    glare : (H, W, 3) cd/m², what is added.
-    share : (H, W) k of each pixel: the share of its light that is spread.
+    picture : (H, W, 3) cd/m², (1 − k)·L + glare.
+    glare : (H, W, 3) cd/m², what is added: the veil, and of what a pixel scatters within itself.
+    share : (H, W) k of each pixel: that of the kernel, with its core where pixels resolve it.
     """
 
     picture: Float
@@ -41,7 +41,9 @@ def scattered(luminance: NDArray[Any], plan: WholePlan, /) -> Scattered:
     """
     light = np.asarray(luminance, np.float64)
     glare = veil(light, plan)
-    share = resolved(plan)
+    leaves = resolved(plan)
+    share = np.maximum(leaves, plan.kernel.share)
+    glare += (share - leaves)[..., None] * light
     return Scattered((1 - share[..., None]) * light + glare, glare, share)
 
 
@@ -71,7 +73,7 @@ def resolved(plan: WholePlan, /) -> Float:
     """(H, W) share of each pixel's light that leaves it."""
     directions = plan.view.directions()
     shares = np.stack([c.share(directions, pair=plan.pair) for c in plan.charts])
-    each = np.stack([plan.resolved(c, c.scale(directions)) for c in plan.charts])
+    each = np.stack([plan.resolved(c.scale(directions)) for c in plan.charts])
     return np.sum(shares * each, 0)
 
 
@@ -100,7 +102,7 @@ def expand_blocks(blocks: Float, shape: tuple[int, int], /) -> Float:
 
 
 def into_chart(blocks: Float, directions: Float, chart: Chart, /) -> Float:
-    """D₁, (rows, columns, 3) with margins, of blocks' light; what lies outside the chart is left out."""
+    """D₁, (rows, columns, 3) with margins, of blocks' light; what lies outside is left out."""
     shape = chart.array_shape(1)
     places = chart.array_place(chart.place_from_direction(directions), 1)
     inside = ((places >= 0.5) & (places < np.array(shape[::-1]) - 1.5)).all(-1)
@@ -148,8 +150,7 @@ def expanded(cells: Float, shape: tuple[int, int], /) -> Float:
     return cells
 
 
-def _filtered(cells: Float, level: int) -> Float:
-    half = taps(level)
+def _filtered(cells: Float, half: tuple[float, ...]) -> Float:
     for axis in (0, 1):
         inner = np.moveaxis(cells, axis, 0)
         reach = len(half) - 1
@@ -178,10 +179,11 @@ def _accumulated(chart: Chart, levels: list[Float], far: Float, plan: WholePlan)
     above: Float | None = None
     for level in range(plan.levels, 0, -1):
         light = levels[level - 1]
-        root = plan.root(chart, level, chart.scale(chart.cell_directions(level)))[..., None]
-        here = root * _filtered(root * light, level)
-        if level == plan.far.level:
-            here = here + far
+        scale = chart.scale(chart.cell_directions(level))
+        here = far if level == plan.far.level else np.zeros_like(light)
+        for rung in (r for r in plan.ladder.rungs if r.level == level):
+            root = plan.root(rung, scale)[..., None]
+            here = here + root * _filtered(root * light, filters(level)[rung.which])
         above = here if above is None else here + expanded(above, light.shape[:2])
     assert above is not None
     return above

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.files.pictures import read_picture
+from andon.files.pictures import Picture, read_picture
 from andon.quantities import photometric
 
-__all__ = ["GapMap", "gaps_of", "read_gaps", "read_mask"]
+__all__ = ["GapMap", "gaps_of", "is_open", "read_gaps"]
 
 # Lighter than this share of white, of light and not of codes, is open.
 OPEN = 0.5
@@ -36,7 +36,7 @@ class GapMap:
     middles: NDArray[np.float64]
 
 
-def gaps_of(is_open: NDArray[np.bool_], /) -> GapMap:
+def gaps_of(open_pixels: NDArray[np.bool_], /) -> GapMap:
     """Groups of open pixels that touch at an edge or a corner.
 
     Raises `InputError` where nothing is open, or more than `MOST_GAPS` are.
@@ -44,7 +44,7 @@ def gaps_of(is_open: NDArray[np.bool_], /) -> GapMap:
     import cv2
 
     count, labels, facts, middles = cv2.connectedComponentsWithStats(
-        np.asarray(is_open, np.uint8), connectivity=8, ltype=cv2.CV_32S
+        np.asarray(open_pixels, np.uint8), connectivity=8, ltype=cv2.CV_32S
     )
     if count == 1:
         raise InputError("has no gap: nothing is white", field="mask")
@@ -57,15 +57,15 @@ def gaps_of(is_open: NDArray[np.bool_], /) -> GapMap:
     )
 
 
-def read_mask(path: Path, /) -> NDArray[np.bool_]:
+def is_open(mask: Picture, /) -> NDArray[np.bool_]:
     """(H, W) whether a picture's pixels are open: its light is at least half of white."""
-    return photometric(read_picture(path).linear()) >= OPEN
+    return photometric(mask.linear()) >= OPEN
 
 
 def read_gaps(path: Path, /) -> GapMap:
     """The gaps of a mask file. Raises `InputError` as `gaps_of`, with the file's name."""
     try:
-        return gaps_of(read_mask(path))
+        return gaps_of(is_open(read_picture(path)))
     except InputError as error:
         if error.file is not None:
             raise

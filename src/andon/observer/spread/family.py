@@ -38,7 +38,7 @@ Range = tuple[float, float]
 
 # Names that people type for the equations of the CIE.
 ALIASES = {"cie-total": "cie135", "cie-general": "cie146-general"}
-# A veil's light is scattered by angles between these.
+# A veil's light is scattered by angles between these, and fills what is within them evenly.
 VEIL_DEGREES = (0.1, 110.0)
 
 
@@ -48,7 +48,7 @@ def spread_function(name: str, eye: Eye | None = None, /, *, halo: bool = True) 
     With `halo` it has the ring of `lenticular_halo`, if that eye sees one.
 
     Raises `InputError` for a name that is none of `NAMES` nor ``cie-total``, ``cie-general``, and
-    where the model scatters more light than there is: by thick mist, and beyond about 94 (paper) to
+    where the model scatters more light than there is: by thick mist, and beyond about 90 (paper) to
     110 years, far from the people that it was measured on.
     """
     eye = Eye() if eye is None else eye
@@ -58,7 +58,7 @@ def spread_function(name: str, eye: Eye | None = None, /, *, halo: bool = True) 
     bloom, valid = _MODELS[known](eye, wide_factor(eye))
     ring = lenticular_halo(eye, paper.halo if known == "paper" else spencer.halo) if halo else None
     spread = SpreadFunction(known, bloom, ring, valid)
-    share = scattered_share(spread, *VEIL_DEGREES)
+    share = _taken(spread, eye)
     if share >= 1:
         raise InputError(
             f"scatters {share:.3g} of the light at {eye.age_years:g} years with mist {eye.mist:g}, "
@@ -87,6 +87,14 @@ def scattered_share(
     Models that are not valid towards 0 have a meaning only beyond where they begin to be.
     """
     return integral(spread.bloom_per_sr, beyond_degrees, until_degrees)
+
+
+def _taken(spread: SpreadFunction, eye: Eye) -> float:
+    """Share of a point's light that a veil and its ring take from it, at most."""
+    within = 2 * np.pi * (1 - np.cos(np.radians(VEIL_DEGREES[0])))
+    near = within * float(spread.bloom_per_sr(VEIL_DEGREES[0]))
+    ring = 0.0 if spread.halo_per_sr is None else spencer.WEIGHTS[eye.adaptation][3]
+    return near + scattered_share(spread, *VEIL_DEGREES) + ring
 
 
 def _cie135(eye: Eye, wide: float) -> tuple[PerSr, Range]:

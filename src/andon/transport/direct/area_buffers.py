@@ -12,7 +12,7 @@ from andon.gpu.device import Gpu
 from andon.gpu.textures import write_buffer
 from andon.lamps import Lamp
 from andon.lamps.areas import AreaLamp, MeshLamp, PolygonLamp
-from andon.lamps.edges import FacetEdges, mesh_edges, polygon_edges, textured_edges
+from andon.lamps.edges import lamp_edges
 from andon.transport.direct.records import EDGE_RECORD, SAMPLE_RECORD
 from andon.transport.direct.soft import sample_points
 
@@ -33,7 +33,7 @@ class AreaBuffers:
         first = 0
         for lamp in lamps:
             if isinstance(lamp, PolygonLamp | MeshLamp):
-                count = len(_edges_of(lamp).a)
+                count = len(lamp_edges(lamp).a)
                 self.edges[lamp.name] = (first, count)
                 first += count
         samples, edges = _sample_records(lamps), _edge_records(lamps)
@@ -69,21 +69,8 @@ def _sample_records(lamps: Sequence[Lamp]) -> NDArray[Any]:
     return records
 
 
-def _edges_of(lamp: PolygonLamp | MeshLamp) -> FacetEdges:
-    if isinstance(lamp, MeshLamp):
-        return mesh_edges(lamp)
-    outline = polygon_edges(lamp)
-    if lamp.texture is None:
-        return outline
-    a, b, weight = textured_edges(lamp.vertices_m, lamp.texture)
-    left = np.tile(outline.left_plane[0], (len(a), 1))
-    right = np.tile(outline.right_plane[0], (len(a), 1))
-    light = weight * lamp.luminance_cd_m2
-    return FacetEdges(a, b, left, right, light, light * float(lamp.two_sided))
-
-
 def _edge_records(lamps: Sequence[Lamp]) -> NDArray[Any]:
-    found = [_edges_of(x) for x in lamps if isinstance(x, PolygonLamp | MeshLamp)]
+    found = [lamp_edges(x) for x in lamps if isinstance(x, PolygonLamp | MeshLamp)]
     records = np.zeros(sum(len(edges.a) for edges in found), EDGE_RECORD.dtype)
     first = 0
     for edges in found:

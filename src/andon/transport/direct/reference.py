@@ -38,7 +38,14 @@ from andon.transport.direct.balls.reference import through_balls
 from andon.transport.direct.casters import ShadowRays
 from andon.transport.direct.soft import sample_points, sample_weights
 
-__all__ = ["illuminance", "illuminate", "visibility", "visible_share"]
+__all__ = [
+    "arriving",
+    "illuminance",
+    "illuminate",
+    "seen_share",
+    "visibility",
+    "visible_share",
+]
 
 Float = NDArray[np.float64]
 
@@ -181,22 +188,42 @@ def illuminate(
     body = None if surface.body_id is None else surface.body_id[mask]
     added = np.zeros_like(position)
     for lamp in lamps:
-        light = illuminance(lamp, position, normal)
+        own = None
         if isinstance(lamp, AreaLamp) and lamp.body in bodies and body is not None:
-            light[body == list(bodies).index(lamp.body)] = 0
-        lit = np.abs(light).max(axis=-1) > 0
-        if served := served_balls(lamp, balls):
-            # Where the lamp does not shine by itself, there is no line to it that could be hidden.
-            is_open, bent = through_balls(lamp, served, position, normal)
-            light = light * is_open[:, None] + bent
-            lit &= np.abs(light).max(axis=-1) > 0
-        light[lit] *= _share(lamp, position[lit], normal[lit], lifted[lit], rays)
-        added += light
+            own = body == list(bodies).index(lamp.body)
+        added += arriving(lamp, position, normal, lifted, rays, balls, own)
     total[mask] = added
     return total
 
 
-def _share(lamp: Lamp, position: Float, normal: Float, lifted: Float, rays: ShadowRays) -> Float:
+def arriving(
+    lamp: Lamp,
+    position: Float,
+    normal: Float,
+    lifted: Float,
+    rays: ShadowRays,
+    balls: Sequence[GlassBall] = (),
+    own: NDArray[np.bool_] | None = None,
+    /,
+) -> Float:
+    """Illuminance (n, 3) of one lamp, shadow included; 0 on its `own` body (n,)."""
+    light = illuminance(lamp, position, normal)
+    if own is not None:
+        light[own] = 0
+    lit = np.abs(light).max(axis=-1) > 0
+    if served := served_balls(lamp, balls):
+        # Where the lamp does not shine by itself, there is no line to it that could be hidden.
+        is_open, bent = through_balls(lamp, served, position, normal)
+        light = light * is_open[:, None] + bent
+        lit &= np.abs(light).max(axis=-1) > 0
+    light[lit] *= seen_share(lamp, position[lit], normal[lit], lifted[lit], rays)
+    return light
+
+
+def seen_share(
+    lamp: Lamp, position: Float, normal: Float, lifted: Float, rays: ShadowRays, /
+) -> Float:
+    """(n, 3) or (n, 1) share of a lamp's light at `position` (n, 3) that nothing hides."""
     if not isinstance(lamp, AreaLamp):
         return visibility(lamp, lifted, rays)[:, None].astype(float)
     shares = [

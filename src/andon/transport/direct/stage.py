@@ -8,7 +8,7 @@ from typing import Any
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.textures import uniform_buffer, write_buffer
-from andon.lamps import Lamp
+from andon.lamps import AreaLamp, Lamp
 from andon.transport.direct.area_buffers import AreaBuffers
 from andon.transport.direct.balls.buffers import BallBuffers
 from andon.transport.direct.balls.model import GlassBall
@@ -24,7 +24,8 @@ from andon.transport.direct.records import (
 from andon.transport.direct.shadows.caster_buffers import CasterBuffers
 from andon.transport.direct.shadows.maps import NEAR_M, ShadowMaps
 from andon.transport.direct.shadows.soft_maps import SoftMaps
-from andon.transport.direct.sum import sum_of_lamps
+from andon.transport.direct.soft import probes
+from andon.transport.direct.sum import lamp_terms, sum_of_lamps
 
 __all__ = ["FILTER", "SOFT_FILTER", "STRUCTS", "SUM", "DirectStage"]
 
@@ -44,6 +45,8 @@ class DirectStage:
     ----------
     group : bind group 1 of any shader that imports direct.wgsl.
     variants : of such a shader, for the lamps of this scene.
+    terms : lamp name → WGSL of its shadowed lux at `position` and `normal`; no area lamps.
+    softening : name of an area lamp → what `softened` in soft.wgsl wants of it.
     """
 
     def __init__(
@@ -79,6 +82,15 @@ class DirectStage:
             triangles=len(self.casters.triangles),
             captured=captured,
         )
+        self.terms = lamp_terms(lamps, self.maps.layers, luminaires.tables)
+        counts = {
+            lamp.name: lamp.shadow.samples
+            for lamp in lamps
+            if isinstance(lamp, AreaLamp) and lamp.shadow is not None
+        }
+        self.softening = {
+            name: (self.soft.firsts[name], count, probes(count)) for name, count in counts.items()
+        }
         self.variants = {
             SUM: code,
             FILTER.format("none"): FILTER.format(self.maps.filter),

@@ -13,7 +13,7 @@ from andon.lamps import AnyAreaLamp, Lamp
 from andon.transport.direct.records import form_of
 from andon.transport.direct.soft import probes
 
-__all__ = ["sum_of_lamps"]
+__all__ = ["lamp_terms", "sum_of_lamps"]
 
 
 def sum_of_lamps(
@@ -60,6 +60,20 @@ def sum_of_lamps(
         if lamp.name in captured
     ]
     return "\n".join([*lines, f"  return {' + '.join(['vec3f(0.0)', *terms])};", "}"])
+
+
+def lamp_terms(
+    lamps: Sequence[Lamp],
+    /,
+    layers: Mapping[str, int],
+    tables: Mapping[str, tuple[int, int, int]],
+) -> dict[str, str]:
+    """Lamp name → WGSL of its shadowed lux at `position` and `normal`; area lamps have none."""
+    return {
+        lamp.name: _term(number, lamp, layers, tables)
+        for number, lamp in enumerate(lamps)
+        if not isinstance(lamp, AnyAreaLamp)
+    }
 
 
 def _term(

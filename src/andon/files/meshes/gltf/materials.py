@@ -3,6 +3,10 @@
 Every extension is handed on as read. Emission with a texture is reduced to its mean over the
 texture, because a `Material` emits one luminance: right in total where the texture covers the
 surface evenly, wrong in place.
+
+Where a file states no metallicFactor glTF's default is 1, all metal; exporters that mean plaster
+leave it out as well. So a material says whether its file stated one (`metallic_stated`), and
+textures of metallic and roughness are not read.
 """
 
 from __future__ import annotations
@@ -57,6 +61,7 @@ class MaterialReader:
             _number(base, "roughnessFactor", 1.0, 1.0),
             sided.boolean() if sided else False,
             _extensions(entry, factor[3]),
+            "metallicFactor" in base and base.get("metallicRoughnessTexture") is None,
         )
         return material, _use(colour) if colour else TextureUse()
 

@@ -6,7 +6,8 @@
       then ROWS each           other outlines, kept until others need the room
 
 A texel holds the four corners of a cell, so that one read is a bilinear one. Between two radii a
-circle's veil, at the same column, is linear in log R: errors are below 0.1 %, where the field of view fades 0.5 %.
+circle's veil, at the same column, is linear in log R: errors are below 0.1 % up to 100° away, where
+the field of view ends.
 """
 
 from __future__ import annotations

@@ -155,7 +155,7 @@ class PerSourceStage:
         for i, (source, row, share) in enumerate(zip(sources, rows, shares, strict=True)):
             ring = self._halo_of(source, halo, share)
             records[i] = self._record(source, kernel, row, ring, settings, core)[0]
-        self._plan(sources, records)
+        self._plan(sources, records, settings.bloom_drawn)
 
     def _halo_of(
         self, source: Source, halo: SpreadFunction | None, share: float
@@ -190,7 +190,7 @@ class PerSourceStage:
             luminance_per_unit=self._luminance_per_unit,
         )
 
-    def _plan(self, sources: Sequence[Source], records: NDArray[Any]) -> None:
+    def _plan(self, sources: Sequence[Source], records: NDArray[Any], bloom: bool) -> None:
         """Writes sources and instances: circles first, of them first those that are everywhere."""
         is_outline = np.array([len(s.outline.radii_radians) > 1 for s in sources], bool)
         is_local = records["ends"][:, FAR] < WHOLE
@@ -199,22 +199,22 @@ class PerSourceStage:
         instances: list[tuple[int, int]] = []
         self._draws, whole = [], []
         for shape, of_shape in (("circle", ~is_outline), ("outline", is_outline)):
-            everywhere = np.nonzero(of_shape & ~is_local)[0]
+            everywhere = np.nonzero(of_shape & ~is_local & bloom)[0]
             first = int(everywhere[0]) if len(everywhere) else 0
             whole += [first, first + len(everywhere)]
             if len(everywhere):
                 self._draws.append(((shape, "whole_light"), 0, 1))
             ringed = of_shape & np.any(records["halo"] > 0, axis=1)
-            far = [(i, FAR) for i in np.nonzero(of_shape & is_local)[0]]
-            near = [(i, ring) for i in np.nonzero(of_shape)[0] for ring in (NEAR, MIDDLE)]
+            far = [(i, FAR) for i in np.nonzero(of_shape & is_local & bloom)[0]]
+            near = [(i, ring) for i in np.nonzero(of_shape & bloom)[0] for ring in (NEAR, MIDDLE)]
             near += [(i, HALO) for i in np.nonzero(ringed)[0]]
             for entry, drawn in (("far_light", far), ("near_light", near)):
                 if drawn:
                     self._draws.append(((shape, entry), len(instances), len(drawn)))
                 instances += drawn
-        if len(records):
+        if instances or any(whole):
             write_buffer(self.gpu, self._sources, records)
-            write_buffer(self.gpu, self._instances, np.array(instances, np.uint32))
+            write_buffer(self.gpu, self._instances, np.array(instances or [(0, 0)], np.uint32))
             write_buffer(self.gpu, self._whole, np.array(whole, np.uint32))
 
     def encode(self, encoder: Any, target: Texture) -> None:

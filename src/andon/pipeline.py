@@ -3,7 +3,7 @@
 ::
 
     capture ─CameraFrame▶ see ─Surface▶ illuminate ─Illuminance▶ compose ─Luminance▶ glass
-                                DisplayImage ◀─ encode ◀─Luminance─ glow ◀─Luminance─┘
+                       DisplayImage ◀─ encode ◀─Luminance─ glow or glare ◀─Luminance─┘
 
 One frame, one or two views: what does not depend on the eye (geometry, lamps, shadow maps) is
 shared, the rest is done per view.
@@ -95,6 +95,7 @@ class Frame:
     report : engine, times, holes and what else is worth knowing.
     bodies : luminance of luminous bodies and visible lamps alone, cd/m²; None without any.
     glow : the same as the glow filters it; None without a glow.
+    glare : what the eye of [observer] adds: veil, halo and needles, cd/m²; None without glare.
     glass : the images that glass shows, sharp; None without glass.
     highlights : mirrored lamps alone, cd/m²; None where nothing mirrors.
     seen : what the eye gets through an optical see-through display; None for a video one.
@@ -108,6 +109,7 @@ class Frame:
     report: Report
     bodies: Luminance | None = None
     glow: Luminance | None = None
+    glare: Luminance | None = None
     seen: Seen | None = None
     glass: Layered | None = None
     highlights: Luminance | None = None
@@ -168,6 +170,9 @@ class Renderer:
         if prepared.glow is not None:
             composed = luminance
             luminance = clock.time("glow", lambda: engine.glow(frame, seen, composed, moment))
+        elif prepared.glare is not None:
+            sharp = luminance
+            luminance = clock.time("glare", lambda: engine.glare(frame, seen, sharp, moment))
         image = clock.time("display", lambda: engine.encode(frame, luminance))
         engine.finish()
         self.stage_seconds = clock.seconds
@@ -198,6 +203,7 @@ class Renderer:
             report,
             bodies,
             filtered,
+            self._engine.read_glare(captured),
             seen,
             layered,
             self._engine.read_highlights(captured),

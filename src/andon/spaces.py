@@ -197,7 +197,14 @@ class View:
 
     def directions(self) -> Float:
         """(H, W, 3) unit directions in the camera frame, through the pixel centres."""
-        x, y = np.moveaxis(self.pixel_grid(), -1, 0)
+        return self.directions_at(self.pixel_grid())
+
+    def directions_at(self, pixels: NDArray[Any], /) -> Float:
+        """(..., 3) unit directions in the camera frame through pixel coordinates (..., 2).
+
+        Beyond the border as well: latlong goes round, and over the poles down on the other side.
+        """
+        x, y = np.moveaxis(np.asarray(pixels, np.float64), -1, 0)
         if self.projection == "latlong":
             azimuth = (x + 0.5) / self.width * 2 * np.pi - np.pi
             elevation = np.pi / 2 - (y + 0.5) / self.height * np.pi

@@ -80,6 +80,12 @@ def test_glass(folder, capsys):
     assert seen == pytest.approx(told, abs=0.005)
 
 
+def test_glare(folder, capsys):
+    command = re.search(r"`andon (glare psf [^`]*)`", README)[1]
+    assert _run(shlex.split(command), debug=True) == 0
+    assert read_picture(folder / "psf.png").values.shape[1] == 1200
+
+
 def test_links():
     links = re.findall(r"\]\(([^)#:]+)\)", README)
     assert "CONVENTIONS.md" in links

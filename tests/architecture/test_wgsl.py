@@ -84,10 +84,23 @@ def looked_at(*kinds, projection="pinhole"):
 
 
 PROJECTION = "andon/gbuffer/projections/{}.wgsl"
+QUADS = "andon/glare/quads/{}.wgsl"
+STRIP = "andon/glare/needles/strip_{}.wgsl"
+
+
+def projected(name):
+    straight, curved = STRIP.format("straight"), STRIP.format("curved")
+    return {
+        PROJECTION.format("pinhole"): PROJECTION.format(name),
+        QUADS.format("pinhole"): QUADS.format(name),
+        straight: curved,
+    }
+
+
 VARIANTS = {
     "as written": {},
-    "fisheye": {PROJECTION.format("pinhole"): PROJECTION.format("fisheye")},
-    "latlong": {PROJECTION.format("pinhole"): PROJECTION.format("latlong")},
+    "fisheye": projected("fisheye"),
+    "latlong": projected("latlong"),
     "linear filter": {FILTER.format("none"): FILTER.format("linear")},
     "exact filter": {FILTER.format("none"): FILTER.format("exact"), DISTANCE: TRIANGLE},
     "textures": {PLAIN: TEXTURED},

@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from andon.errors import InputError
-from andon.glow.automatic import cie135, glow_from_table, scattered_share
+from andon.glow.automatic import glow_from_table, standard_share
 from andon.glow.model import Glow, pixels_per_radian
 from andon.glow.plan import plan_axis
 from andon.glow.reference import add_glow, filtered, gaussian_taps
+from andon.observer.spread.cie135 import cie135
+from andon.observer.spread.model import Eye
 from andon.scene.eye import Glare, Observer
 from andon.spaces import View
 from comparison import assert_agree
@@ -207,18 +209,10 @@ def test_every_plan_is_bounded(length, sigma):
 # ── the eye ─────────────────────────────────────────────────────────────────────────────────────
 
 
-def test_cie_135():
-    values = cie135([0.1, 1, 3, 10, 30], age=25, pigment=0.5)
-    assert_agree(values, [11441.4, 18.8647, 1.01208, 0.0603211, 0.00760722], rtol=1e-5)
-    angles = [1.0, 3.0, 10.0, 30.0]
-    ratio = cie135(angles, age=70) / cie135(angles, age=25)
-    assert_agree(ratio, [1.2857, 1.6482, 2.0674, 2.1193], rtol=1e-4)
-
-
 def test_shares_of_the_scattered_light():
-    assert scattered_share(0.0) == pytest.approx(1)
-    assert scattered_share(90.0) == 0
-    shares = [scattered_share(angle) for angle in (0.01, 0.1, 1, 10, 60)]
+    assert standard_share(Eye(), 0.0) == pytest.approx(1)
+    assert standard_share(Eye(), 90.0) == 0
+    shares = [standard_share(Eye(), angle) for angle in (0.01, 0.1, 1, 10, 60)]
     assert (np.diff(shares) < 0).all()
     # Against a quadrature in θ instead of log θ, from where the function is smooth enough for it.
     theta = np.linspace(1, 90, 400_001)
@@ -240,7 +234,7 @@ def test_as_much_within_a_degree_as_the_eye_scatters(observer, keys):
     rows, columns = np.mgrid[:601, :601]
     within = picture[np.hypot(rows - 300, columns - 300) <= 100].sum()
     age, pigment = (25, 0.5) if observer is None else (70, 1.2)
-    assert within == pytest.approx(1 - scattered_share(1.0, age, pigment), abs=1e-3)
+    assert within == pytest.approx(1 - standard_share(Eye(age, pigment), 1.0), abs=1e-3)
 
 
 def test_the_defaults_that_the_docs_state():

@@ -104,7 +104,6 @@ def test_motion_and_order():
 
 
 NOT_YET = [
-    (POINT | {"flicker": {}}, "flicker"),
     (POINT | {"path": "way.csv"}, "path"),
     (
         {

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from andon.cli.glare_app import glare_app
 from andon.cli.options import EngineOption, RelightOptions, takes
 from andon.cli.probes import probes_app
 
@@ -310,6 +311,7 @@ def bench(
 
 
 app.add_typer(probes_app, name="probes")
+app.add_typer(glare_app, name="glare")
 lamp_app = typer.Typer()
 app.add_typer(lamp_app, name="lamp")
 

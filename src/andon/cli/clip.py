@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.cli.console import Interrupted, note
+from andon.cli.console import note
+from andon.cli.film import check_film, frame_moments, write_film
 from andon.cli.relight import check_view
 from andon.cli.without_photograph import refuse_photograph, white_text
-from andon.errors import InputError, MachineError
+from andon.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from andon.engines.prepared import Prepared
     from andon.pipeline import Renderer
@@ -26,10 +25,6 @@ if TYPE_CHECKING:
 
 __all__ = ["ClipOptions", "run"]
 
-# Frames of one file are held until all are drawn: this many bytes at most.
-MOST_BYTES = 2 << 30
-# More is a mistyped time or rate: a day at 60 frames a second has five million.
-MOST_FRAMES = 1_000_000
 # More pixels than a screen has are a mistyped number.
 LARGEST_SCALE = 8.0
 
@@ -59,24 +54,17 @@ def run(options: ClipOptions) -> None:
 
 def draw(scene: Scene, options: ClipOptions, views: Sequence[str] = ()) -> None:
     """Draws `scene`, which stands in for `options.scene`; several `views` side by side."""
-    is_folder = _check_out(options.out)
-    from andon.files.pictures.moving import check_moving
-
-    scene = _scaled(scene, options.scale)
-    refuse_photograph(options.out, scene)
     rate = options.frames_per_second
     rate = scene.scene.frames_per_second if rate is None else rate
+    check_film(options.out, rate)
+    scene = _scaled(scene, options.scale)
+    refuse_photograph(options.out, scene)
     times = _times(options, scene, rate)
-    if not is_folder:
-        check_moving(options.out, rate)
     from andon.pipeline import Renderer
 
     renderer = Renderer(scene, options.engine)  # type: ignore[arg-type]
     film = _Film(renderer, tuple(views) or (options.view or renderer.view_names[0],))
-    if is_folder:
-        _write_folder(options, film, times)
-    else:
-        _write_file(options, film, times, rate)
+    write_film(options.out, film.picture, times, rate, film.size)
     for line in _notes(options, scene, renderer.prepared):
         note(line)
     print(options.out)
@@ -151,108 +139,13 @@ def _scaled_camera(camera: Camera, name: str, scale: float) -> Camera:
     return camera.model_copy(update=changed)
 
 
-def _check_out(out: Path) -> bool:
-    """Whether it is a folder; refuses what cannot be written, before any work is done."""
-    from andon.files.pictures.moving import MOVING_SUFFIXES
-
-    suffix = out.suffix.lower()
-    if suffix and not out.is_dir():
-        if suffix not in MOVING_SUFFIXES:
-            raise InputError(
-                f"must end in {', '.join(MOVING_SUFFIXES)}, or be a folder, got {out.name!r}",
-                file=out,
-                field="--out",
-            )
-        if not out.parent.is_dir():
-            raise InputError(
-                f"the folder {str(out.parent)!r} does not exist",
-                file=out,
-                field="--out",
-                remedy="make it",
-            )
-        return False
-    if out.exists() and not out.is_dir():
-        raise InputError("must be a folder, is a file", file=out, field="--out")
-    if out.is_dir() and any(out.iterdir()):
-        raise InputError(
-            "the folder has something in it, which frames would mix with",
-            file=out,
-            field="--out",
-            remedy="name a new one, or empty it",
-        )
-    return True
-
-
 def _times(options: ClipOptions, scene: Scene, rate: float) -> list[float]:
-    """Session times of the frames: from the start up to the end, which begins the next round."""
+    """Session times of the frames."""
     for name, number in (("--from", options.start_seconds), ("--to", options.end_seconds)):
         if number is not None and not np.isfinite(number):
             raise InputError(f"must be finite, got {number}", field=name)
-    if not (np.isfinite(rate) and rate > 0):
-        raise InputError(f"must be > 0, got {rate:g}", field="--fps")
     start = options.start_seconds or 0.0
     end = scene.scene.duration_seconds if options.end_seconds is None else options.end_seconds
     if options.end_seconds is None and scene.scene.duration_seconds == 0:
         return [start]
-    if end <= start:
-        raise InputError(f"must be after --from, {start:g} s, got {end:g}", field="--to")
-    # A hair less, so that rounding makes no frame of its own.
-    count = max(1, int(np.ceil(min((end - start) * rate, 2.0 * MOST_FRAMES) - 1e-6)))
-    if count > MOST_FRAMES:
-        raise InputError(f"more than {MOST_FRAMES} frames", field="--to", remedy="check --fps")
-    return [start + number / rate for number in range(count)]
-
-
-def _write_folder(options: ClipOptions, film: _Film, times: list[float]) -> None:
-    """Each frame as soon as it is drawn: 0000.png, 0001.png, …"""
-    from andon.files.pictures import write_png
-
-    out = options.out
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise MachineError(f"{out}: cannot be made: {error.strerror}") from error
-    digits = max(4, len(str(len(times) - 1)))
-    with _progress(len(times)) as step:
-        for number, time in enumerate(times):
-            try:
-                picture = film.picture(time)
-                write_png(out / f"{number:0{digits}d}.png", picture)
-            except KeyboardInterrupt:
-                kept = f"{number} of {len(times)} frames are in {out}"
-                raise Interrupted(f"interrupted; {kept}") from None
-            step()
-
-
-def _write_file(options: ClipOptions, film: _Film, times: list[float], rate: float) -> None:
-    """All frames in one file, once they are drawn."""
-    from andon.files.pictures.moving import write_moving
-
-    total = len(times) * film.size
-    if total > MOST_BYTES:
-        raise InputError(
-            f"{len(times)} frames take {total / 2**30:.1f} GB, at most {MOST_BYTES >> 30} are held",
-            field="--out",
-            remedy="name a folder: its frames are written one by one",
-        )
-    frames: list[Any] = []
-    with _progress(len(times)) as step:
-        for time in times:
-            frames.append(film.picture(time))
-            step()
-    write_moving(options.out, frames, rate)
-
-
-@contextmanager
-def _progress(count: int) -> Generator[Callable[[], None]]:
-    """A bar on stderr with the time that is left; call what it yields after each frame."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
-
-    columns = ("frames", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    console = Console(stderr=True)
-    # Where nobody looks at it, all that is left of a bar is an empty line.
-    hidden = not console.is_terminal
-    with Progress(*columns, console=console, transient=True, disable=hidden) as bar:
-        task = bar.add_task("frames", total=count)
-        yield lambda: bar.advance(task)
+    return frame_moments(start, end, rate)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,14 @@ from andon.errors import AndonError, InputError
 if TYPE_CHECKING:
     from andon.pipeline import Report
 
-__all__ = ["Interrupted", "check_writable", "note", "print_report", "printable"]
+__all__ = [
+    "Interrupted",
+    "check_apart",
+    "check_writable",
+    "note",
+    "print_report",
+    "printable",
+]
 
 
 class Interrupted(AndonError):
@@ -44,6 +51,21 @@ def check_writable(path: Path, suffixes: tuple[str, ...], field: str) -> None:
         raise InputError(
             f"the folder {str(folder)!r} does not exist", file=path, field=field, remedy="make it"
         )
+
+
+def check_apart(inputs: Iterable[Path], outputs: Iterable[Path | None]) -> None:
+    """Refuses an output that is an input or another output. Raises `InputError`."""
+    taken = {path.resolve() for path in inputs}
+    for path in outputs:
+        if path is None:
+            continue
+        if path.resolve() in taken:
+            raise InputError(
+                "is also an input or another output, and would be overwritten",
+                file=path,
+                remedy="give it another name",
+            )
+        taken.add(path.resolve())
 
 
 def print_report(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from andon.cli.console import check_writable, note
+from andon.cli.console import check_apart, check_writable, note
 from andon.errors import InputError
 
 if TYPE_CHECKING:
@@ -85,16 +85,8 @@ def _check(options: FuseOptions) -> None:
         )
     if options.seconds is not None and options.exposures is not None:
         raise InputError("give one of --seconds and --list", field="--seconds")
-    taken = {path.resolve() for path in options.photos}
-    taken |= set() if options.exposures is None else {options.exposures.resolve()}
-    for path in (options.out, options.sheet, options.response):
-        if path is not None and path.resolve() in taken:
-            raise InputError(
-                "is also an input or another output, and would be overwritten",
-                file=path,
-                remedy="give it another name",
-            )
-        taken |= set() if path is None else {path.resolve()}
+    inputs = [*options.photos, *([options.exposures] if options.exposures else [])]
+    check_apart(inputs, (options.out, options.sheet, options.response))
 
 
 def _read(options: FuseOptions) -> Bracket:

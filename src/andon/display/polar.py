@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.display.dashes import dash_mask
+
 if TYPE_CHECKING:
     from andon.lamps.goniometry import MainPlane
 
@@ -110,12 +112,8 @@ class _Diagram:
 
     def draw_plane(self, plane: MainPlane, colour: tuple[int, int, int], *, dashed: bool) -> None:
         points = self.place(plane.angles_degrees, plane.candela)
-        lengths = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-        # Dashes of equal length on the paper, whatever the steps of the angles.
-        phase = lengths / self.px(10) % 2 < 1.2
-        for index in range(len(points) - 1):
-            if dashed and not phase[index]:
-                continue
+        ink = dash_mask(points, self.px(10)) if dashed else np.ones(len(points) - 1, bool)
+        for index in np.flatnonzero(ink):
             ends = [tuple(points[index].tolist()), tuple(points[index + 1].tolist())]
             self.draw.line(ends, fill=colour, width=self.px(2.5), joint="curve")
 

@@ -1,13 +1,15 @@
-"""Curves over time, one panel below the other, and bars: what a report of a recording shows."""
+"""Curves, one panel below the other, and bars: over time, or on logarithmic axes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+from andon.display.dashes import dash_mask
 
 __all__ = ["COLOURS", "Bars", "Curve", "Panel", "Spans", "drawn", "tick_values"]
 
@@ -16,9 +18,13 @@ Rgb = NDArray[np.uint8]
 Colour = tuple[int, int, int]
 
 INK, PAPER, RULE = (32, 32, 32), (250, 249, 246), (222, 220, 214)
+# Between the numbers of a logarithmic axis.
+FINE_RULE = (238, 236, 231)
 COLOURS: tuple[Colour, ...] = ((125, 125, 120), (200, 60, 30), (30, 90, 170), (20, 130, 70))
 WIDTH_PX, PANEL_PX = 1200, 340
 LEFT_PX, RIGHT_PX, TOP_PX, BOTTOM_PX = 84, 24, 64, 56
+# Between the rows of a legend inside.
+LEGEND_PX = 19
 # Drawn larger and scaled down: Pillow's lines have no smooth edges of their own.
 OVERSAMPLING = 2
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
@@ -34,6 +40,7 @@ class Curve:
     y: Float
     width_px: float = 1.5
     longest_step: float = np.inf
+    dash_px: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +64,11 @@ class Bars:
 
 @dataclass(frozen=True)
 class Panel:
-    """One diagram; `x_range` and `y_range` are its ends, what lies outside is cut off there."""
+    """One diagram; `x_range` and `y_range` are its ends, what lies outside is cut off there.
+
+    Axes named in `logarithmic` have ends > 0 and a line for every 1, 2, … 9 × 10ⁿ. The legend is a
+    row above, or a column `inside`, at the top right; what has no name is not in it.
+    """
 
     title: str
     x_label: str
@@ -67,6 +78,9 @@ class Panel:
     curves: Sequence[Curve] = ()
     bars: Sequence[Bars] = ()
     spans: Sequence[Spans] = ()
+    logarithmic: Literal["", "x", "y", "xy"] = ""
+    legend: Literal["above", "inside", "none"] = "above"
+    height_px: int = PANEL_PX
 
 
 def tick_values(low: float, high: float, most: int = 10) -> list[float]:
@@ -78,15 +92,32 @@ def tick_values(low: float, high: float, most: int = 10) -> list[float]:
     return [float(f"{(first + i) * step:.10g}") for i in range(count)]
 
 
+def decade_lines(low: float, high: float) -> list[tuple[float, str]]:
+    """Values 1, 2, … 9 × 10ⁿ within low…high, > 0, and what is written at them: powers of 10 only.
+
+    Axes of two decades and less have numbers at 2 and 5 too.
+    """
+    powers = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
+    written = (1, 2, 5) if high / low <= 100 else (1,)
+    return [
+        (value, f"{value:g}" if factor in written else "")
+        for power in powers
+        for factor in range(1, 10)
+        if low * (1 - 1e-9) <= (value := float(f"{factor}e{power}")) <= high * (1 + 1e-9)
+    ]
+
+
 def drawn(panels: Sequence[Panel], /, *, width_px: int = WIDTH_PX) -> Rgb:
     """(H, W, 3) uint8: the panels, from above to below, with axes, units and legends."""
     from PIL import Image, ImageDraw
 
-    size = width_px, PANEL_PX * len(panels)
+    size = width_px, sum(panel.height_px for panel in panels)
     image = Image.new("RGB", (size[0] * OVERSAMPLING, size[1] * OVERSAMPLING), PAPER)
     pen: Any = ImageDraw.Draw(image)
-    for index, panel in enumerate(panels):
-        _Sheet(panel, pen, width_px, index * PANEL_PX).draw()
+    top_px = 0
+    for panel in panels:
+        _Sheet(panel, pen, width_px, top_px).draw()
+        top_px += panel.height_px
     return np.asarray(image.resize(size, Image.Resampling.LANCZOS), np.uint8)
 
 
@@ -98,19 +129,30 @@ class _Sheet:
 
         self.panel, self.pen = panel, pen
         self.left, self.right = LEFT_PX, width_px - RIGHT_PX
-        self.top, self.bottom = top_px + TOP_PX, top_px + PANEL_PX - BOTTOM_PX
+        self.top, self.bottom = top_px + TOP_PX, top_px + panel.height_px - BOTTOM_PX
         self.font: Any = ImageFont.load_default(size=13 * OVERSAMPLING)
         self.large: Any = ImageFont.load_default(size=16 * OVERSAMPLING)
 
     def across(self, x: Float | float) -> Float:
-        low, high = self.panel.x_range
-        share = np.clip((np.asarray(x, float) - low) / (high - low), 0, 1)
+        share = self._share("x", x, self.panel.x_range)
         return (self.left + share * (self.right - self.left)) * OVERSAMPLING
 
     def down(self, y: Float | float) -> Float:
-        low, high = self.panel.y_range
-        share = np.clip((np.asarray(y, float) - low) / (high - low), 0, 1)
+        share = self._share("y", y, self.panel.y_range)
         return (self.bottom - share * (self.bottom - self.top)) * OVERSAMPLING
+
+    def _share(self, axis: str, value: Float | float, ends: tuple[float, float]) -> Float:
+        """How far along its axis a value lies, 0…1."""
+        place = np.clip(np.asarray(value, float), *ends)
+        if axis in self.panel.logarithmic:
+            return np.log(place / ends[0]) / np.log(ends[1] / ends[0])
+        return (place - ends[0]) / (ends[1] - ends[0])
+
+    def _lines(self, axis: str, ends: tuple[float, float], most: int) -> list[tuple[float, str]]:
+        """Values of the grid's lines and what is written at them."""
+        if axis in self.panel.logarithmic:
+            return decade_lines(*ends)
+        return [(value, f"{value:g}") for value in tick_values(*ends, most=most)]
 
     def draw(self) -> None:
         for spans in self.panel.spans:
@@ -132,14 +174,16 @@ class _Sheet:
 
     def _axes(self) -> None:
         s = OVERSAMPLING
-        for value in tick_values(*self.panel.x_range, most=14):
+        for value, text in self._lines("x", self.panel.x_range, most=14):
             x = float(self.across(value))
-            self.pen.line([(x, self.top * s), (x, self.bottom * s)], RULE, s)
-            self.pen.text((x, (self.bottom + 6) * s), f"{value:g}", INK, self.font, anchor="mt")
-        for value in tick_values(*self.panel.y_range, most=8):
+            rule = RULE if text else FINE_RULE
+            self.pen.line([(x, self.top * s), (x, self.bottom * s)], rule, s)
+            self.pen.text((x, (self.bottom + 6) * s), text, INK, self.font, anchor="mt")
+        for value, text in self._lines("y", self.panel.y_range, most=8):
             y = float(self.down(value))
-            self.pen.line([(self.left * s, y), (self.right * s, y)], RULE, s)
-            self.pen.text(((self.left - 6) * s, y), f"{value:g}", INK, self.font, anchor="rm")
+            rule = RULE if text else FINE_RULE
+            self.pen.line([(self.left * s, y), (self.right * s, y)], rule, s)
+            self.pen.text(((self.left - 6) * s, y), text, INK, self.font, anchor="rm")
         middle = (self.left + self.right) / 2 * s
         below = (self.bottom + 42) * s
         self.pen.text((middle, below), self.panel.x_label, INK, self.font, anchor="mb")
@@ -156,23 +200,50 @@ class _Sheet:
                 part = np.repeat(part, 2)
             if len(part):
                 x, y = self.across(curve.x[part]), self.down(curve.y[part])
-                self._line(x, y, curve.colour, curve.width_px)
+                self._line(x, y, curve.colour, curve.width_px, curve.dash_px)
 
-    def _line(self, x: Float, y: Float, colour: Colour, width_px: float) -> None:
+    def _line(
+        self, x: Float, y: Float, colour: Colour, width_px: float, dash_px: float | None = None
+    ) -> None:
         if len(x) == 2 and x[0] == x[1] and y[0] == y[1]:
             x = x + np.array([-1.0, 1.0])
-        places = list(zip(x.tolist(), y.tolist(), strict=True))
-        self.pen.line(places, colour, round(width_px * OVERSAMPLING), joint="curve")
+        points = np.stack([x, y], axis=-1)
+        pieces = [points]
+        if dash_px is not None:
+            ink = dash_mask(points, dash_px * OVERSAMPLING)
+            pieces = [points[i : i + 2] for i in np.flatnonzero(ink)]
+        for piece in pieces:
+            places = [(float(a), float(b)) for a, b in piece]
+            self.pen.line(places, colour, round(width_px * OVERSAMPLING), joint="curve")
 
     def _legend(self) -> None:
-        s = OVERSAMPLING
-        x, y = self.right * s, (self.top - 14) * s
         entries = [*self.panel.curves, *self.panel.bars, *self.panel.spans]
+        entries = [entry for entry in entries if entry.name]
+        s = OVERSAMPLING
+        if self.panel.legend == "none":
+            return
+        if self.panel.legend == "inside":
+            widest = max((self.font.getlength(entry.name) for entry in entries), default=0.0)
+            x = (self.right - 16) * s - widest
+            for row, entry in enumerate(entries):
+                y = (self.top + 16 + LEGEND_PX * row) * s
+                self.pen.text((x, y), entry.name, INK, self.font, anchor="lm")
+                self._swatch(entry, x - 44 * s, x - 8 * s, y)
+            return
+        x, y = self.right * s, (self.top - 14) * s
         for entry in reversed(entries):
             x -= self.font.getlength(entry.name)
             self.pen.text((x, y), entry.name, INK, self.font, anchor="lm")
             x -= 24 * s
-            thick = 5 if isinstance(entry, Spans) else 1.5
-            box = [x, y - thick * s, x + 18 * s, y + thick * s]
-            self.pen.rectangle(box, fill=entry.colour)
+            self._swatch(entry, x, x + 18 * s, y)
             x -= 16 * s
+
+    def _swatch(self, entry: Curve | Bars | Spans, first: float, last: float, y: float) -> None:
+        if isinstance(entry, Spans):
+            reach = 5 * OVERSAMPLING
+            self.pen.rectangle([first, y - reach, last, y + reach], fill=entry.colour)
+            return
+        # Pieces short enough for dashes to show.
+        x = np.linspace(first, last, 19)
+        dash_px = entry.dash_px if isinstance(entry, Curve) else None
+        self._line(x, np.full(len(x), y), entry.colour, 3.0, dash_px)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite.model import Ambient
+from andon.engines.adaptation import adaptation_cd_m2
 from andon.engines.gaze import SceneGaze, gaze_of
 from andon.engines.probes import SceneProbes
 from andon.glass.backdrops.distances import plane_distance, sphere_distance
@@ -49,8 +50,6 @@ Float = NDArray[np.float64]
 
 # Pupil of relative scenes, which do not say how bright anything is: a lit room in the evening.
 PUPIL_MM = 4.0
-# Of the picture's white: what scenes without a photograph are taken to have in the mean.
-GREY_WORLD = 0.18
 # How far beside a hole of the geometry its depth is looked for.
 BESIDE_RADIANS = np.radians(1.0)
 
@@ -260,15 +259,7 @@ def _pupil_mm(scene: Scene, frames: Mapping[str, CameraFrame], dimming: Float) -
     """As stated, or by what the eyes are adapted to: the dimmed photograph, without lamps."""
     if scene.observer.pupil_mm is None and scene.photometry == "relative":
         return PUPIL_MM
-    if not scene.has_photograph:
-        white = next(iter(frames.values())).luminance_per_unit
-        return pupil_mm(scene.observer, GREY_WORLD * white)
-    means = [
-        float(photometric(dimming * frame.linear.reshape(-1, 3).mean(axis=0)))
-        * frame.luminance_per_unit
-        for frame in frames.values()
-    ]
-    return pupil_mm(scene.observer, float(np.mean(means)))
+    return pupil_mm(scene.observer, adaptation_cd_m2(scene, frames, dimming))
 
 
 def _environments(

@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from andon import gbuffer
 from andon.composite import stage as composite
 from andon.composite.reference import unlit_linear
+from andon.display import ost
 from andon.display.model import Seen
 from andon.display.ost_stage import OstStage
 from andon.display.stage import DisplayStage
 from andon.engines.changes import Changes, Rectangle
+from andon.engines.glare_gpu import GlareView
 from andon.engines.glass_gpu import GlassBuffers, GlassView
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
@@ -75,13 +77,19 @@ class _View:
             self.glow = GlowStage(gpu, alone, self.luminance, prepared.glow, view)
             self.filtered = make_texture(gpu, alone.format, view.width, view.height, label="glow")
             self.hide = None if self.glass is None else self.glass.hiding(alone)
+        self.glare: GlareView | None = None
+        shown, through = self.luminance, prepared.exposure.see_through
+        unlit = None if through is None else unlit_linear(frame, prepared.ambient)
+        if prepared.glare is not None:
+            real = None if through is None or unlit is None else ost.real_light(unlit, through)
+            self.glare = GlareView(gpu, prepared.glare, frame, self.luminance, real)
+            shown = self.glare.seen
         self.display: DisplayStage | OstStage
-        if prepared.exposure.see_through is not None:
-            unlit = unlit_linear(frame, prepared.ambient)
-            self.display = OstStage(gpu, self.luminance, frame, prepared.exposure, unlit)
+        if unlit is not None:
+            self.display = OstStage(gpu, shown, frame, prepared.exposure, unlit)
         else:
             self.display = DisplayStage(
-                gpu, self.luminance, frame.response, prepared.exposure, frame.luminance_per_unit
+                gpu, shown, frame.response, prepared.exposure, frame.luminance_per_unit
             )
         own = {0: ("uint", seen.texture.view), 1: ("uniform", seen.view_buffer)}
         groups = [
@@ -283,6 +291,30 @@ class GpuEngine:
                 view.hide.encode_within(self.encoder, [alone], view.glass.within)
             view.glow.encode(self.encoder, view.composite.lamps.within)
         return luminance
+
+    def glare(
+        self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, moment: Moment
+    ) -> Texture:
+        """Records the picture as the observer's eye scatters it; waits to know its sources."""
+        own = self._views[frame.view.name].glare
+        if own is None:
+            return luminance
+        own.encode_sources(self.encoder)
+        self.finish()
+        own.update()
+        own.encode(self.encoder)
+        return own.seen
+
+    def read_glare(self, frame: CameraFrame) -> Luminance | None:
+        """What glare added to the view that was drawn last; for figures, not for frames."""
+        own = self._views[frame.view.name].glare
+        if own is None:
+            return None
+        view = frame.view
+        alone = make_texture(self.gpu, "rgba16float", view.width, view.height, label="glare")
+        own.encode_glare(self.encoder, alone)
+        self.finish()
+        return self._cd_m2(alone, frame)
 
     def encode(self, frame: CameraFrame, luminance: Texture) -> DisplayStage | OstStage:
         """Records the display."""

@@ -11,6 +11,7 @@ from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
 from andon.display.model import Exposure
 from andon.engines.checks import check_lamps
+from andon.engines.glare import SceneGlare, glare_of, with_clipped_light
 from andon.engines.glass import SceneGlass, glass_of
 from andon.engines.highlights import SceneHighlights, highlights_of
 from andon.engines.moment import Moment
@@ -49,14 +50,17 @@ LATER_TABLES = ("baked",)
 
 LATER_KEYS = {
     "surface": ("response", "reflectance_map"),
-    "capture": ("clipped_luminance_cd_m2", "depth", "pose", "noise"),
-    "atmosphere": ("mist",),
-    "observer": ("pigment", "glasses"),
-    "glare": ("renderer", "highlights", "halo", "needles", "adaptation"),
+    "capture": ("depth", "pose", "noise"),
 }
 
-# Keys of [observer] that only glass that somebody looks at asks for.
+# Keys that only glass that somebody looks at and glare ask for, and those that only glare does.
 PUPIL_KEYS = ("pupil_mm", "pupil_model")
+GLARE_KEYS = {
+    "capture": ("clipped_luminance_cd_m2",),
+    "atmosphere": ("mist",),
+    "observer": ("glasses", "glasses_dioptres"),
+    "glare": ("renderer", "highlights", "halo", "needles", "adaptation"),
+}
 
 
 def nobody(time_seconds: float, /) -> tuple[Body, ...]:
@@ -78,6 +82,7 @@ class Prepared:
         triangles.
     exposure : settings of the display.
     glow : of luminous bodies, or None.
+    glare : in the observer's eye, of all light; never with a glow, which stands for it; or None.
     photometry : the word that every number carries.
     ignored : tables of the scene that this version does not draw.
     sources : names of the known lamps of E0, which `lamps` has with positive and negative light.
@@ -100,6 +105,7 @@ class Prepared:
     probes: SceneProbes | None = None
     glass: SceneGlass | None = None
     balls: tuple[GlassBall, ...] = ()
+    glare: SceneGlare | None = None
     highlights: SceneHighlights | None = None
 
     def at(self, time_seconds: float) -> Moment:
@@ -133,13 +139,14 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
     """Reads all that `scene` names. Raises `InputError` for whatever does not fit.
 
     With `drawn` False there are no frames where there is no photograph, and neither rig, white nor
-    a volume of probes are needed: for whoever makes light, as bakes do.
+    a volume of probes are needed: for whoever makes light, as bakes do. Then no lamp flickers.
     """
+    scene = scene if drawn else scene.steady()
     probes, notes = probes_of(scene) if drawn else (None, ())
     seen = _photographed if scene.has_photograph else _all_virtual
     frames, ambient, surface = seen(scene, probes, drawn)
     virtual = _virtual_groups(scene, surface)
-    lamps = (*resolve_lamps(scene, 0.0), *resolve_sources(scene, 0.0, virtual))
+    lamps = (*resolve_lamps(scene.steady(), 0.0), *resolve_sources(scene, 0.0, virtual))
     if frames:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
@@ -162,6 +169,7 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         probes=probes,
         glass=glass,
         balls=() if glass is None else glass.balls,
+        glare=glare_of(scene, frames, np.asarray(ambient.dimming)) if frames else None,
         highlights=highlights_of(scene, surface),
     )
 
@@ -172,7 +180,7 @@ _Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel]
 def _all_virtual(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen:
     """Frames, light and surface of a scene without a photograph."""
     ambient = ambient_without_photograph(scene)
-    lamps = resolve_lamps(scene, 0.0)
+    lamps = resolve_lamps(scene.steady(), 0.0)
     frames = sky_frames(scene, lamps, white_cd_m2(scene, ambient, lamps)) if drawn else {}
     return frames, ambient, virtual_surface(scene)
 
@@ -205,6 +213,7 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
         )
         for name, picture in pictures.items()
     }
+    frames = {name: with_clipped_light(scene, frame) for name, frame in frames.items()}
     return frames, ambient, replace(surface, notes=(*surface.notes, *notes))
 
 
@@ -222,9 +231,13 @@ def _ignored(scene: Scene) -> tuple[str, ...]:
     tables = [name for name in LATER_TABLES if getattr(scene, name)]
     has_glass = bool(scene.glass)
     tables += ["gaze"] if scene.gaze is not None and not has_glass else []
+    has_glare = scene.glare is not None and scene.glare.model != "glow"
     later: dict[str, tuple[str, ...]] = dict(LATER_KEYS)
-    later["observer"] += () if has_glass else PUPIL_KEYS
-    later["observer"] += () if has_glass or scene.glare is not None else ("age",)
+    for table, names in () if has_glare else GLARE_KEYS.items():
+        later[table] = (*later.get(table, ()), *names)
+    of_eye = () if has_glass or has_glare else PUPIL_KEYS
+    of_eye += () if has_glass or scene.glare is not None else ("age", "pigment")
+    later["observer"] = (*later.get("observer", ()), *of_eye)
     keys: list[str] = []
     for table, names in later.items():
         stated = getattr(scene, table)

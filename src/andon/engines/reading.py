@@ -224,13 +224,6 @@ def exposure_of(scene: Scene) -> Exposure:
 
 def glow_of(scene: Scene) -> Glow | None:
     """The glow of luminous bodies, or None."""
-    if scene.glare is not None and scene.glare.model != "glow":
-        raise InputError(
-            f"{scene.glare.model!r} is in the schema but not rendered yet",
-            file=scene.file,
-            field="glare.model",
-            remedy="use 'glow', or leave [glare] out",
-        )
     try:
         return glow_from_table(scene.glare, scene.observer)
     except InputError as error:

@@ -26,6 +26,9 @@ from andon.glare.highlights.tiles import (
     survey_tiles,
     threshold_cd_m2,
 )
+from andon.glare.needles.reference import draw as draw_needles
+from andon.glare.sources.survey import survey
+from andon.glare.whole_picture import reference as whole_picture
 from andon.glass import reference as glass
 from andon.glass.backdrops.model import SceneOfView
 from andon.glass.backdrops.paper import preblurred, with_blurred_pictures
@@ -62,6 +65,7 @@ class ReferenceEngine:
         self._surfaces: dict[str, Surface] = {}
         self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
         self._layered: Layered | None = None
+        self._glare: Luminance | None = None
         self._mirrored: Mirrored | None = None
         self._blurred: tuple[float, GlassModel | None] = (0.0, None)
         self.maps_redrawn = 0
@@ -244,6 +248,32 @@ class ReferenceEngine:
         if self._layered is None:
             return bodies
         return bodies * (1 - self._layered.layers.coverage)[..., None]
+
+    def glare(
+        self, frame: CameraFrame, seen: Surface, luminance: Luminance, moment: Moment
+    ) -> Luminance:
+        """The picture as the observer's eye scatters it."""
+        own, word = self.prepared.glare, self.prepared.photometry
+        if own is None:
+            return luminance
+        light = all_light = np.maximum(np.nan_to_num(np.asarray(luminance.cd_m2, np.float64)), 0)
+        through = self.prepared.exposure.see_through
+        if through is not None:
+            # Real light glares in the eye by itself.
+            unlit = composite.unlit_linear(frame, self.prepared.ambient)
+            real = frame.luminance_per_unit * ost.real_light(unlit, through)
+            light = np.maximum(all_light - real, 0)
+        whole = whole_picture.scattered(light, own.plans[frame.view.name])
+        found = own.finder(frame.view).find(survey(light), lambda y, x: light[y, x])
+        added = whole.glare + draw_needles(own.needles_of(found, frame.view), frame.view)
+        self._glare = Luminance(added, word)
+        if through is not None:
+            return Luminance(all_light + added, word)
+        return Luminance(whole.picture - whole.glare + added, word)
+
+    def read_glare(self, frame: CameraFrame) -> Luminance | None:
+        """What glare added to the view that was drawn last."""
+        return self._glare
 
     def encode(self, frame: CameraFrame, luminance: Luminance) -> DisplayImage:
         """8-bit codes for the screen."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,3 +32,10 @@ class Body:
     outside_cd_m2: Float
     inside_cd_m2: Float
     reflectance: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def brightened(self, factor: float) -> Body:
+        """The body with `factor` times its own light."""
+        if factor == 1:
+            return self
+        outside, inside = factor * self.outside_cd_m2, factor * self.inside_cd_m2
+        return replace(self, outside_cd_m2=outside, inside_cd_m2=inside)

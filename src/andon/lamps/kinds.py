@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps.areas import DiskLamp, MeshLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.lamps.model import (
+    LIGHT_FIELDS,
     DirectionalLamp,
     GoniometricLamp,
     HemisphereLamp,
@@ -15,7 +19,7 @@ from andon.lamps.model import (
     SpotLamp,
 )
 
-__all__ = ["AnyAreaLamp", "Lamp", "middle_of_area"]
+__all__ = ["AnyAreaLamp", "Lamp", "brightened", "middle_of_area"]
 
 AnyAreaLamp = SphereLamp | DiskLamp | PolygonLamp | TubeLamp | MeshLamp
 PointLike = PointLamp | SpotLamp | GoniometricLamp
@@ -33,3 +37,12 @@ def middle_of_area(lamp: AnyAreaLamp, /) -> NDArray[np.float64]:
             return lamp.vertices_m.mean(axis=0)
         case MeshLamp():
             return lamp.positions_m.mean(axis=0)
+
+
+def brightened(lamp: Lamp, factor: NDArray[np.float64] | float, /, **changes: Any) -> Lamp:
+    """`lamp` with `factor` (3,) or a number times its light, and with other `changes`."""
+    for key in LIGHT_FIELDS:
+        light = getattr(lamp, key, None)
+        if light is not None:
+            changes[key] = light * factor
+    return replace(lamp, **changes)

@@ -21,9 +21,10 @@ from andon.lamps.distributions import (
     intensity_cd_from_flux,
     spot_solid_angle_sr,
 )
+from andon.lamps.flickering import flicker_factor
 from andon.lamps.goniometry import flux_lm, maximum_cd, tilt_factor
 from andon.lamps.imported import imported_lamps
-from andon.lamps.kinds import AnyAreaLamp, Lamp
+from andon.lamps.kinds import AnyAreaLamp, Lamp, brightened
 from andon.lamps.model import (
     LIGHT_FIELDS,
     DirectionalLamp,
@@ -80,6 +81,9 @@ def resolve_tables(scene: Scene, time_seconds: float, where: str = "lamp") -> tu
                 lamps = (_lamp(scene, place, table),)
             if isinstance(lamps[0], PointLamp) and table.shell is not None:
                 lamps, _ = in_shell(scene, place, lamps[0], table.shell, groups)
+            share = flicker_factor(scene, place, table, time_seconds)
+            if share != 1:
+                lamps = tuple(brightened(lamp, share) for lamp in lamps)
         for lamp in lamps:
             light = [getattr(lamp, key, None) for key in LIGHT_FIELDS]
             if not all(
@@ -109,12 +113,14 @@ def resolve_bodies(scene: Scene, time_seconds: float) -> tuple[Body, ...]:
     """
     bodies: list[Body] = []
     for place, table, groups in _tables(scene, time_seconds, "lamp"):
+        share = flicker_factor(scene, place, table, time_seconds)
         if table.kind in AREA_KINDS and table.drawn:
             lamp = area_lamp(scene, place, table)
-            bodies.append(area_body(scene, place, table, lamp))
+            bodies.append(area_body(scene, place, table, lamp).brightened(share))
         elif getattr(table, "shell", None) is not None:
             lamp = cast(PointLamp, _lamp(scene, place, table))
-            bodies.append(in_shell(scene, place, lamp, table.shell, groups)[1])
+            body = in_shell(scene, place, lamp, table.shell, groups)[1]
+            bodies.append(body.brightened(share))
     return tuple(bodies)
 
 
@@ -163,6 +169,13 @@ def _check_names(scene: Scene, lamps: list[Lamp]) -> None:
 
 def _refuse_later(scene: Scene, place: str, table: AnyLamp) -> None:
     """Raise `InputError` if the lamp is of a kind, or has a key, that is not rendered yet."""
+    if table.flicker is not None and place.startswith("ambient."):
+        raise InputError(
+            "is of light that a photograph holds still",
+            file=scene.file,
+            field=f"{place}.flicker",
+            remedy="leave it out",
+        )
     faults = {key: remedy for key, remedy in _LATER.items() if getattr(table, key, None)}
     if table.transport != "direct":
         faults["transport"] = "use 'direct'"
@@ -180,7 +193,6 @@ def _refuse_later(scene: Scene, place: str, table: AnyLamp) -> None:
 
 # Keys whose meaning would be lost if they were ignored.
 _LATER = {
-    "flicker": "use [[lamp.key]]",
     "angular_diameter_degrees": "use 0, a point at infinity",
 }
 

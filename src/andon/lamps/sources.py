@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.lamps.areas import SphereLamp, TubeLamp
-from andon.lamps.kinds import Lamp
-from andon.lamps.model import LIGHT_FIELDS, PointLamp
+from andon.lamps.kinds import Lamp, brightened
+from andon.lamps.model import PointLamp
 from andon.lamps.resolve import resolve_tables
 
 if TYPE_CHECKING:
@@ -88,11 +88,7 @@ def _own_extent_m(lamp: Lamp) -> float:
 
 def scaled(lamp: Lamp, factor: Float, /, **changes: Any) -> Lamp:
     """`lamp` with `factor` (3,) times its light, not drawn, and with other `changes`."""
-    for key in LIGHT_FIELDS:
-        light = getattr(lamp, key, None)
-        if light is not None:
-            changes[key] = light * factor
     for key, unseen in (("visible_radius_m", 0.0), ("drawn", False)):
         if hasattr(lamp, key):
             changes[key] = unseen
-    return replace(lamp, **changes)
+    return brightened(lamp, factor, **changes)

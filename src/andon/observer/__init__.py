@@ -5,7 +5,7 @@
     age ─▶ accommodation ──────────────┐
     luminance, age ─▶ pupil            ├─▶ what is in focus, and how wide a point out of focus is
     eye rays ─▶ gaze: fixation, filter ┘
+    age, pigment, pupil, glasses, mist ─▶ spread: how light is scattered on its way to the retina
 
-Stages that need an eye ask here: glass for its focus. What is scattered in the eye is the glow's
-(`andon.glow.automatic`).
+Stages that need an eye ask here: glass for its focus, glare and glow for what is scattered.
 """

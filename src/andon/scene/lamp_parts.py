@@ -104,9 +104,9 @@ class Shell(Table):
 class Flicker(Table):
     """Irregular brightness S(t) of mean 1: candles, sun through leaves."""
 
-    exponent: Annotated[float, Field(gt=1, le=3)] = Field(
+    exponent: Annotated[float, Field(gt=1, lt=2)] = Field(
         default=1.8,
-        description="z of the intermittent map S ← S + u·S^z mod 1; 1/f-like above 1.5.",
+        description="z of the intermittent map S ← S + S^z mod 1, 1…2; 1/f-like above 1.5.",
     )
     steps_per_second: Positive = Field(
         default=30.0,
@@ -114,7 +114,12 @@ class Flicker(Table):
     )
     amount: Fraction = Field(
         default=1.0,
-        description="0 steady … 1 the full swing of S.",
+        description="0 steady … 1 the full swing of S: long all but dark, up to 5 times the mean.",
+    )
+    seed: Annotated[int, Field(ge=0, lt=2**63)] | None = Field(
+        default=None,
+        description="Lamps of one seed flicker together; default: each by itself, after "
+        "scene.seed and its name.",
     )
     gaps: Annotated[int, Field(ge=1, le=100_000)] = Field(
         default=1,
@@ -122,5 +127,12 @@ class Flicker(Table):
     )
     mask: Reference | None = Field(
         default=None,
-        description="Picture of the gaps, white is open.",
+        description="Picture of the gaps, white is open: each flickers, with a weight that is its "
+        "area.",
     )
+
+    @model_validator(mode="after")
+    def _check_gaps(self) -> Flicker:
+        if self.mask is not None and self.gaps != 1:
+            raise refusal("gaps and mask exclude each other", key="gaps")
+        return self

@@ -166,6 +166,13 @@ class Scene(Table):
             lamps.append(lamp_at(lamp, time_seconds))
         return self.model_copy(update={"lamp": tuple(lamps)})
 
+    def steady(self) -> Scene:
+        """The scene with lamps that do not flicker: each has its mean light."""
+        lamps: tuple[Any, ...] = tuple(
+            lamp.model_copy(update={"flicker": None}) for lamp in self.lamp
+        )
+        return self.model_copy(update={"lamp": lamps})
+
     def to_toml(self) -> str:
         """The scene as TOML; parsing it gives an equal scene."""
         from andon.scene.dump import dump_scene

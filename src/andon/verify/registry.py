@@ -52,6 +52,9 @@ def rows() -> tuple[Row, ...]:
         areas,
         caustic,
         gaze,
+        glare_flicker,
+        glare_models,
+        glare_needles,
         glass,
         glass_blur,
         glass_frame,
@@ -83,4 +86,7 @@ def rows() -> tuple[Row, ...]:
         *glass_blur.ROWS,
         *glass_frame.ROWS,
         *caustic.ROWS,
+        *glare_flicker.ROWS,
+        *glare_models.ROWS,
+        *glare_needles.ROWS,
     )

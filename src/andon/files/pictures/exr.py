@@ -102,6 +102,8 @@ def read_exr_part(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> ExrPa
         for key, value in header.items()
         if isinstance(value, str | int | float) and key not in HEADER_OF_LAYOUT
     }
+    if "envmap" in header:
+        attributes["envmap"] = _envmap(header["envmap"])
     return ExrPart(channels, origin, shape, attributes, _chromaticities(header, path))
 
 
@@ -112,6 +114,11 @@ def _chromaticities(header: dict[str, Any], path: str | Path) -> tuple[float, ..
     if not isinstance(stated, tuple) or len(cast("tuple[Any, ...]", stated)) != 8:
         raise InputError("must be eight numbers", file=path, field="chromaticities")
     return tuple(float(value) for value in cast("tuple[Any, ...]", stated))
+
+
+def _envmap(value: Any) -> str:
+    """``latlong`` or ``cube``, as OpenEXR's environment maps are."""
+    return "latlong" if value == openexr().ENVMAP_LATLONG else "cube"
 
 
 def openexr() -> Any:

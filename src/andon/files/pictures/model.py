@@ -27,8 +27,9 @@ class Picture:
     icc : name of the embedded profile that `values` were converted *from*, or None.
     hfov_degrees : horizontal field of view from EXIF, of the upright picture, or None.
     view_line : Radiance's VIEW line without the keyword, or None.
-    attributes : header entries that are numbers or text, by name: of EXR and HDR all; PNG's
-        ``gamma``; of EXIF ``exposure_seconds``, ``f_number`` and ``iso`` where stated.
+    attributes : header entries that are numbers or text, by name: of EXR and HDR all, EXR's
+        ``envmap`` as ``latlong`` or ``cube``; PNG's ``gamma``; of EXIF ``exposure_seconds``,
+        ``f_number`` and ``iso`` where stated.
     alpha : (H, W) float32, cover (PNG: 0…1; EXR: as stored), or None where the file has none.
     """
 

@@ -61,6 +61,7 @@ def write_exr(
     unit: str,
     photometry: Photometry = "absolute",
     attributes: dict[str, str | int | float] | None = None,
+    alpha: NDArray[Any] | None = None,
 ) -> Path:
     """Write measured values as a 32-bit float EXR.
 
@@ -71,13 +72,15 @@ def write_exr(
     unit : header attribute ``andon:unit``: ``lx``, ``cd/m2``, ``m`` …
     photometry : header attribute ``andon:photometry``.
     attributes : further header attributes; they win over the two above.
+    alpha : (H, W) cover of colour (H, W, 3), which is premultiplied: 0 is light that is added.
     """
     if values.ndim == 3 and values.shape[2] == 1:
         values = values[..., 0]
     _check_array(values, path, (np.float16, np.float32, np.float64))
     wheel = openexr()
-    names = "Y" if values.ndim == 2 else "RGB"
-    planes = np.moveaxis(np.atleast_3d(values.astype(np.float32)), -1, 0)
+    names = "Y" if values.ndim == 2 else "RGB" if alpha is None else "RGBA"
+    layers = np.atleast_3d(values) if alpha is None else np.dstack([values, alpha])
+    planes = np.moveaxis(layers.astype(np.float32), -1, 0)
     header: dict[str, Any] = {
         "compression": wheel.ZIP_COMPRESSION,
         "type": wheel.scanlineimage,
@@ -99,10 +102,11 @@ def write_exr(
     return write_atomically(path, fill)
 
 
-def write_hdr(path: str | Path, values: NDArray[Any]) -> Path:
+def write_hdr(path: str | Path, values: NDArray[Any], *, view_line: str | None = None) -> Path:
     """Write (H, W, 3) linear Rec.709 light, finite and ≥ 0, as a Radiance picture (RGBE).
 
-    1 % steps and no unit; `write_exr` keeps float32 and says what the numbers are.
+    1 % steps and no unit; `write_exr` keeps float32 and says what the numbers are. `view_line` is
+    what the header says after ``VIEW=``.
     """
     import cv2
 
@@ -113,7 +117,8 @@ def write_hdr(path: str | Path, values: NDArray[Any]) -> Path:
     if not done:
         raise MachineError(f"{path}: OpenCV could not encode the Radiance picture")
     # Other readers take the magic word of Radiance's own programs only.
-    return write_bytes(path, encoded.tobytes().replace(b"#?RGBE", b"#?RADIANCE", 1))
+    first = "#?RADIANCE" if view_line is None else f"#?RADIANCE\nVIEW= {view_line}"
+    return write_bytes(path, encoded.tobytes().replace(b"#?RGBE", first.encode("ascii"), 1))
 
 
 def write_npy(path: str | Path, values: NDArray[Any]) -> Path:

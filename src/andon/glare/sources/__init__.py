@@ -1,1 +1,1 @@
-"""Sources of glare found in pictures: blobs of bright pixels, their light and their outlines."""
+"""Where glare comes from: bright regions of a picture, highlights, lamps of a scene."""

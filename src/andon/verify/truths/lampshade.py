@@ -19,9 +19,9 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.files.radiance_programs import run_radiance
 from andon.quantities import Geometry
 from andon.rays import RayScene, face_normals
-from andon.verify.truths.radiance import run_radiance
 from andon.verify.truths.sources import (
     LUMENS_PER_WATT,
     PointSource,

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import MachineError
-from andon.verify.truths.radiance import package_folder
+from andon.files.radiance_programs import package_folder
 from andon.verify.truths.sources import LUMENS_PER_WATT
 
 __all__ = ["radiance_candela"]

@@ -1,0 +1,187 @@
+"""What ``andon glare IN -o OUT`` does: reads, scatters for each eye, writes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.cli.console import check_apart, check_writable, note
+from andon.cli.glare import GlareOptions
+from andon.cli.glare_typed import ages_of, exposure_of, eye_of, gaze_of, model_of, one_of, view_of
+from andon.errors import InputError
+
+if TYPE_CHECKING:
+    from andon.glare.calibration import Calibrated
+    from andon.glare.picture import GlareResult
+
+__all__ = ["run"]
+
+PICTURES, LIGHT = (".png", ".jpg", ".jpeg"), (".exr", ".hdr")
+RENDERERS = ("auto", "per-source", "whole-picture")
+
+
+def run(options: GlareOptions) -> None:
+    """Reads, scatters, writes. Raises `InputError` before anything is written."""
+    ages = _check(options)
+    seen = _read(options)
+    for warning in seen.warnings:
+        note(warning)
+    results = _results(options, seen, ages)
+    _write(options, seen, results)
+    for line in _told(results[-1]):
+        note(line)
+    print(options.out)
+
+
+def _check(options: GlareOptions) -> tuple[float, ...]:
+    """The ages; all else that can be refused before the picture is read."""
+    check_writable(options.out, (*PICTURES, *LIGHT), "--out")
+    if options.veil_map is not None:
+        check_writable(options.veil_map, (".exr", ".png"), "--veil-map")
+    if options.report is not None:
+        check_writable(options.report, (".json",), "--report")
+    inputs = [options.picture, *([options.camera] if options.camera else [])]
+    check_apart(inputs, [options.out, options.veil_map, options.report])
+    ages = ages_of(options.age)
+    is_light = options.out.suffix.lower() in LIGHT
+    if is_light and (len(ages) > 1 or options.compare):
+        raise InputError(
+            "several pictures make a sheet, which is for people",
+            file=options.out,
+            field="--out",
+            remedy="name a .png, or give one age and no --compare",
+        )
+    if options.veil_map is not None and len(ages) > 1:
+        raise InputError("is of one eye: give one age", field="--veil-map")
+    one_of(options.renderer, RENDERERS, "--renderer")
+    model_of(options.model)
+    eye_of(options, ages[0], None)
+    exposure_of(options.exposure)
+    return ages
+
+
+def _read(options: GlareOptions) -> Calibrated:
+    from andon.files.limits import DEFAULT_LIMITS
+    from andon.files.pictures import read_picture
+    from andon.glare.calibration import calibrated
+    from andon.glare.cleaning import MAX_PIXELS
+
+    limits = replace(DEFAULT_LIMITS, max_pixels=MAX_PIXELS)
+    picture = read_picture(options.picture, limits=limits)
+    return calibrated(
+        picture,
+        view=view_of(options, picture),
+        cd_m2_per_unit=options.luminance_scale,
+        file=str(options.picture),
+    )
+
+
+def _results(options: GlareOptions, seen: Calibrated, ages: tuple[float, ...]) -> list[GlareResult]:
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from andon.glare.picture import glare_of_picture
+
+    level = _level(seen)
+    gaze = gaze_of(options.gaze, seen.view)
+    renderer: Any = options.renderer
+    engine: Any = options.engine
+    console = Console(stderr=True)
+    results: list[GlareResult] = []
+    # Where nobody looks at it, all that is left of a bar is an empty line.
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("scattering", total=len(ages))
+        for age in ages:
+            results.append(
+                glare_of_picture(
+                    seen.luminance_cd_m2,
+                    seen.view,
+                    eye_of(options, age, level),
+                    options.model,
+                    renderer=renderer,
+                    engine=engine,
+                    gaze=gaze,
+                    photometry=seen.photometry,
+                    clipped=seen.clipped,
+                    shows=seen.shows,
+                )
+            )
+            bar.advance(task)
+    return results
+
+
+def _level(seen: Calibrated) -> float | None:
+    """What the eye is adapted to, cd/m²; None where the picture is relative."""
+    if seen.photometry == "relative":
+        return None
+    from andon.glare.cleaning import cleaned
+    from andon.glare.sources.find import background_luminance
+    from andon.quantities import photometric
+
+    light = photometric(cleaned(seen.luminance_cd_m2, seen.view, seen.shows).light)
+    solid = seen.view.solid_angles()
+    shows = np.ones(light.shape, bool) if seen.shows is None else seen.shows
+    return background_luminance(light[shows], solid[shows])
+
+
+def _write(options: GlareOptions, seen: Calibrated, results: list[GlareResult]) -> None:
+    from andon.cli.glare_outputs import write_light, write_report, write_veil
+
+    first = results[0]
+    map_file = None if options.veil_map is None else options.veil_map.name
+    reports = [_report(result, seen, map_file) for result in results]
+    if options.out.suffix.lower() in LIGHT:
+        light = first.glare if options.glare_only else first.picture
+        write_light(options.out, light, first, seen, additive=options.glare_only)
+    else:
+        _write_picture(options, seen, results)
+    if options.veil_map is not None:
+        write_veil(options.veil_map, first)
+    if options.report is not None:
+        write_report(options.report, reports)
+
+
+def _write_picture(options: GlareOptions, seen: Calibrated, results: list[GlareResult]) -> None:
+    from andon.cli.glare_outputs import auto_exposure, caption, exposed, sheet
+    from andon.files.pictures import write_picture
+
+    stated = exposure_of(options.exposure)
+    scale = auto_exposure(seen) if stated is None else stated
+    tiles: list[tuple[str, NDArray[np.uint8]]] = []
+    if options.compare:
+        tiles.append((f"{options.picture.name}, original", exposed(results[0].pixels.light, scale)))
+    for result in results:
+        light = result.glare if options.glare_only else result.picture
+        tiles.append((caption(result), exposed(light, scale)))
+    write_picture(options.out, tiles[0][1] if len(tiles) == 1 else sheet(tiles))
+    if stated is None:
+        note(
+            f"exposure {scale:.4g} per cd/m²"
+            + (", of the log mean" if seen.clipped is None else "")
+        )
+
+
+def _report(result: GlareResult, seen: Calibrated, map_file: str | None) -> Any:
+    told = result.report(map_file=map_file, warnings=seen.warnings)
+    told["view"] |= {"angles_from": seen.angles_from}
+    told["pixels"] |= {"cd_m2_per_unit": seen.cd_m2_per_unit, "light_from": seen.light_from}
+    return told
+
+
+def _told(result: GlareResult) -> list[str]:
+    """The main numbers of the last eye, as lines."""
+    numbers = result.numbers
+    word = result.photometry
+    unit = "cd/m²" if word == "absolute" else "(relative)"
+    lines = [
+        f"veil where the eye looks {numbers.veil_cd_m2:.3g} {unit}, of a mean of "
+        f"{numbers.adaptation_cd_m2:.3g}; {len(result.found.sources)} sources"
+    ]
+    for name, value in (("TI", numbers.ti_percent), ("UGR", numbers.ugr), ("DGP", numbers.dgp)):
+        valid = numbers.validity[{"TI": "ti_percent"}.get(name, name.lower())]
+        if value is not None and valid.holds:
+            lines.append(f"{name} {value:.3g} {valid.unit if valid.unit != '1' else ''}".rstrip())
+    return lines

@@ -1,0 +1,125 @@
+"""Glare of a scene for both engines: whose eye, which model, and which sources have needles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.engines.adaptation import adaptation_cd_m2
+from andon.errors import InputError
+from andon.glare.kernel import Kernel
+from andon.glare.needles.determinants import needles_of
+from andon.glare.needles.model import NeedleModel, Needles, Which
+from andon.glare.sources.live import LiveSources, SourceFinder
+from andon.glare.whole_picture.plan import WholePlan, plan_whole
+from andon.observer.presets import eye_of
+from andon.observer.spread.family import spread_function
+from andon.observer.spread.model import Eye
+from andon.quantities import CameraFrame, photometric
+from andon.scene import Scene
+from andon.spaces import View
+
+Float = NDArray[np.float64]
+
+__all__ = ["SceneGlare", "glare_of", "with_clipped_light"]
+
+# Adaptation of relative scenes, which do not say how bright anything is: a room in the evening.
+EVENING_CD_M2 = 10.0
+# Sources with a halo and needles, the strongest first: more are one bright surface.
+MOST_SOURCES = 16
+
+
+@dataclass(frozen=True, eq=False)
+class SceneGlare:
+    """Glare of a scene, ready for both engines.
+
+    Attributes
+    ----------
+    eye, kernel : whose eye, and how it scatters.
+    renderer : of the bloom.
+    contrast : luminance of a source over the ambient from which it has halo and needles.
+    needles : constants; None: no needles.
+    seed : pattern of the needles.
+    plans : of the whole picture, by view.
+    """
+
+    eye: Eye
+    kernel: Kernel
+    renderer: Literal["per-source", "whole-picture"]
+    contrast: float
+    needles: NeedleModel | None
+    seed: int
+    plans: Mapping[str, WholePlan]
+
+    def finder(self, view: View, /) -> SourceFinder:
+        """What finds the sources of a view's frames."""
+        return SourceFinder(view, contrast=self.contrast, most=MOST_SOURCES)
+
+    def needles_of(self, found: LiveSources, view: View, /) -> tuple[Needles, ...]:
+        """Needles of each source, as the eye of a view sees them."""
+        if self.needles is None:
+            return ()
+        which: Which = (
+            "left" if view.name == "left" else "right" if view.name == "right" else "mono"
+        )
+        return tuple(
+            needles_of(
+                source, self.eye, found.ambient_cd_m2, self.seed, which=which, model=self.needles
+            )
+            for source in found.sources
+        )
+
+
+def glare_of(
+    scene: Scene, frames: Mapping[str, CameraFrame], dimming: NDArray[np.float64], /
+) -> SceneGlare | None:
+    """The glare of a scene; None without [glare] or with its model ``glow``.
+
+    Raises `InputError` where the model scatters more light than there is.
+    """
+    table = scene.glare
+    if table is None or table.model == "glow":
+        return None
+    adapted = adaptation_cd_m2(scene, frames, dimming)
+    adapted = EVENING_CD_M2 if scene.photometry == "relative" else adapted
+    eye = eye_of(scene.observer, scene.atmosphere, adapted, table.adaptation)
+    try:
+        spread = spread_function(table.model, eye, halo=table.halo)
+    except InputError as error:
+        raise InputError(
+            error.rule, file=scene.file, field="glare.model", remedy=error.remedy
+        ) from error
+    kernel = Kernel(spread, table.minimum_angle_degrees)
+    whole = table.renderer != "per-source"
+    return SceneGlare(
+        eye,
+        kernel,
+        "whole-picture" if whole else "per-source",
+        table.highlight_contrast,
+        replace(NeedleModel(), contrast=table.highlight_contrast) if table.needles else None,
+        scene.scene.seed if table.seed is None else table.seed,
+        {name: plan_whole(frame.view, kernel) for name, frame in frames.items()} if whole else {},
+    )
+
+
+def with_clipped_light(scene: Scene, frame: CameraFrame, /) -> CameraFrame:
+    """The frame with capture.clipped_luminance_cd_m2 where the sensor clipped, its hue kept.
+
+    What shines in a photograph is brighter than its white; how much, nobody can tell but the scene.
+    Only a scene with glare asks: a display shows white for both.
+    """
+    stated = scene.capture.clipped_luminance_cd_m2 if scene.capture else None
+    if stated is None or scene.glare is None or scene.glare.model == "glow":
+        return frame
+    if frame.clipped is None or not frame.clipped.any():
+        return frame
+    linear = frame.linear.copy()
+    clipped = linear[frame.clipped]
+    seen = photometric(clipped) * frame.luminance_per_unit
+    factor = np.maximum(stated / np.maximum(seen, np.finfo(np.float32).tiny), 1.0)
+    linear[frame.clipped] = (clipped * factor[:, None]).astype(np.float32)
+    return replace(frame, linear=linear)

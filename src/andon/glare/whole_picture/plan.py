@@ -1,0 +1,96 @@
+"""What both engines draw the veil of one view with one kernel by.
+
+::
+
+    pixels ──reduce──▶ blocks ──spline──▶ D₁ ─▶ D₂ ─▶ … ─▶ D_T        light, [1 3 3 1]/8 a step
+                                          │     │          │ far level F: M·D_F, true angles
+    pixels ◀─expand── blocks ◀──spline── A₁ ◀─ A₂ ◀─ … ◀─ A_T         veil, [3 1]/4 a step
+                                        A_l = Σ √w·P(√w·D_l) + expand(A_{l+1})
+
+Conventions, for the light and the veil of each channel:
+
+- blocks are 2×2 pixels with one beyond the border on each side (`charts.block_shape`); pixel p of
+  an axis gives ¾ of its light L·ω to block ⌊p/2⌋ and ¼ to the nearer neighbour, and reads alike;
+- D is light per area of the chart, cd·sr/unit²: a block adds (light/cell²)·B(u)·B(v) to the cells
+  of level 1 around it, B the quadratic B-spline; `charts.Chart.array_place` says where it lies;
+- levels hold D on the same scale: reduce averages, expand interpolates. Cells 2p and 2p + 1 of one
+  level lie in cell p of the next; both have `MARGIN` cells more on each side, and zeros beyond;
+- the sum is over the level's rungs, one filter P each (two from level 3 on, none at the top where
+  only the far part is): √w of a cell is `WholePlan.root`, a function of the chart's scale a there,
+  and P is separable, `splines.filters(level)[rung.which]` along each axis, of sum 1: the middle
+  tap and those to one side;
+- far: A_F += M·D_F from `light_cells` to `receiving_cells`, before A_F is expanded;
+- veil of a block = Σ charts share(direction)·Σ B(u)·B(v)·A₁;
+- what stays in a pixel is `1 − resolved(a)`, a of the chart that it is read from (of the larger
+  share, where there are two), and out = (1 − resolved)·L + veil.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.glare.kernel import Kernel
+from andon.glare.whole_picture.charts import Chart, charts_of
+from andon.glare.whole_picture.far import Far, far_level, plan_far
+from andon.glare.whole_picture.ladder import Ladder, Rung
+from andon.glare.whole_picture.mixture import Mixture
+from andon.spaces import View
+
+__all__ = ["WholePlan", "plan_whole"]
+
+Float = NDArray[np.float64]
+
+# χ begins to fall at a σ of so many coarse cells, and ends at so many.
+FAR_CELLS = (0.8, 3.2)
+
+
+@dataclass(frozen=True, eq=False)
+class WholePlan:
+    """Everything that is settled before a picture is seen.
+
+    Attributes
+    ----------
+    view, kernel : what it is for.
+    charts : one, or two that share the sphere.
+    ladder : the filters of the levels and their shares of light.
+    far : the rest, between all pairs of coarse cells.
+    """
+
+    view: View
+    kernel: Kernel
+    charts: tuple[Chart, ...]
+    ladder: Ladder
+    far: Far
+
+    @property
+    def pair(self) -> bool:
+        """Whether two charts share the sphere."""
+        return len(self.charts) == 2
+
+    @property
+    def levels(self) -> int:
+        """T, the last level that is needed: at least the far part's."""
+        return max(self.ladder.levels, self.far.level)
+
+    def root(self, rung: Rung, scale: Float, /) -> Float:
+        """(...) √w of a rung where the chart's scale is a, units per radian."""
+        return np.sqrt(self.ladder.share_of(rung, scale)) / scale
+
+    def resolved(self, scale: Float, /) -> Float:
+        """(...) share of light that leaves its place, where the chart's scale is a."""
+        near = (self.ladder.share_of(rung, scale) for rung in self.ladder.rungs)
+        return sum(near, np.interp(scale, self.far.scales, self.far.shares))
+
+
+def plan_whole(view: View, kernel: Kernel, /) -> WholePlan:
+    """The plan of the veil that `kernel` makes in pictures of `view`."""
+    charts = charts_of(view)
+    mixture = Mixture.of(kernel)
+    level = far_level(charts)
+    cell = charts[0].cell
+    start, end = (cell * 2 ** (level - 1) * cells for cells in FAR_CELLS)
+    ladder = Ladder.of(view, mixture, cell, (start, end))
+    return WholePlan(view, kernel, charts, ladder, plan_far(charts, level, kernel, mixture, ladder))

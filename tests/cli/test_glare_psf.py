@@ -64,6 +64,35 @@ def test_the_standard_observer_is_the_ratio_s_line(folder, capfd):
 
 
 @pytest.mark.parametrize(
+    "words",
+    [
+        ["--model", "cie135", *(w for age in range(20, 80, 5) for w in ("--age", age))],
+        ["--model", "cie135", "--model", "spencer", *(w for a in range(6) for w in ("--age", a))],
+    ],
+)
+def test_a_dozen_curves_look_different(folder, capfd, words, monkeypatch):
+    from andon.display import spread_plot
+
+    panels = []
+
+    def drawn(given, **_):
+        panels.extend(given)
+        return np.zeros((4, spread_plot.WIDTH_PX, 3), np.uint8)
+
+    monkeypatch.setattr(spread_plot, "drawn", drawn)
+    outcome = run_andon(capfd, "glare", "psf", "-o", "psf.png", *words)
+    assert outcome.code == 0, outcome.err
+    for panel in panels:
+        assert len({(curve.colour, curve.dash_px) for curve in panel.curves if curve.name}) == 12
+
+
+def test_one_curve_by_two_names(folder, capfd):
+    run_andon(capfd, "glare", "psf", "-o", "one.png", "--model", "cie135")
+    run_andon(capfd, "glare", "psf", "-o", "two.png", "--model", "cie135", "--model", "cie-total")
+    assert (folder / "one.png").read_bytes() == (folder / "two.png").read_bytes()
+
+
+@pytest.mark.parametrize(
     ("words", "line"),
     [
         (["-o", "psf.jpg"], "psf.jpg: --out: must end in .png, got 'psf.jpg'"),

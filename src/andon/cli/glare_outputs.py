@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from andon.glare.calibration import Calibrated
     from andon.glare.picture import GlareResult
+
+    Tone = Literal["none", "hue", "reinhard", "fusion"]
 
 __all__ = [
     "auto_exposure",
@@ -51,13 +53,13 @@ def auto_exposure(seen: Calibrated) -> float:
     return MIDDLE_GREY / float(np.exp(np.average(np.log(light[lit]), weights=weights[lit])))
 
 
-def exposed(light: Float, units_per_cd_m2: float) -> Rgb:
-    """(H, W, 3) sRGB codes; what is brighter than white fades to white and keeps its hue."""
+def exposed(light: Float, units_per_cd_m2: float, tone: Tone = "hue") -> Rgb:
+    """(H, W, 3) sRGB codes; with the tone ``hue`` what is brighter than white keeps its hue."""
     from andon.display.model import Exposure
     from andon.display.reference import encode
     from andon.responses import SRGB
 
-    return encode(light, Exposure(units_per_cd_m2, "hue"), SRGB, 1.0)
+    return encode(light, Exposure(units_per_cd_m2, tone), SRGB, 1.0)
 
 
 def caption(result: GlareResult) -> str:

@@ -58,10 +58,10 @@ def run(options: PsfOptions) -> None:
     check_writable(options.out, (".png",), "--out")
     from andon.display.spread_plot import spread_plot
     from andon.files.pictures import write_png
-    from andon.observer.spread.family import NAMES, spread_function
+    from andon.observer.spread.family import ALIASES, NAMES, spread_function
     from andon.observer.spread.model import Eye
 
-    names = tuple(dict.fromkeys(options.models)) or NAMES
+    names = dict.fromkeys(ALIASES.get(name, name) for name in options.models or NAMES)
     spreads = [
         (spread_function(name, Eye(age, options.pigment, options.pupil_mm)), age)
         for name in names

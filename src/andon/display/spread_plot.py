@@ -35,8 +35,8 @@ COLOURS = (
     (20, 130, 70),
     (150, 60, 160),
 )
-# Of the ages of one model.
-DASHES_PX = (None, 9.0, 4.0, 16.0)
+# Of the ages of one model among several, of which there are six at most.
+DASHES_PX = (None, 9.0, 4.0, 16.0, 2.5, 26.0)
 
 WIDTH_PX, TILE_COLUMNS = 1200, 4
 # Half of a tile, and what is white on it for a point that gives 1 lx at the eye.
@@ -81,8 +81,9 @@ def _curves(spreads: Sequence[Spread], reference: Float, ends: tuple[float, floa
     curves: list[Curve] = []
     for spread, age in spreads:
         model, years = names.index(spread.name), ages.index(age)
-        colour = COLOURS[(model if len(names) > 1 else years) % len(COLOURS)]
-        dash_px = DASHES_PX[years % len(DASHES_PX)] if len(names) > 1 else None
+        alone = len(names) == 1
+        colour = COLOURS[(years if alone else model) % len(COLOURS)]
+        dash_px = DASHES_PX[years // len(COLOURS) if alone else years]
         y = _within(spread.bloom_per_sr(THETA_DEGREES) / reference, ends)
         least, most = spread.valid_degrees
         valid = np.clip(THETA_DEGREES, least, most) == THETA_DEGREES

@@ -10,17 +10,22 @@ from numpy.typing import NDArray
 from andon import gbuffer
 from andon.composite import stage as composite
 from andon.composite.reference import unlit_linear
+from andon.display import ost
 from andon.display.model import Seen
 from andon.display.ost_stage import OstStage
 from andon.display.stage import DisplayStage
 from andon.engines.changes import Changes, Rectangle
+from andon.engines.glare_gpu import GlareView
 from andon.engines.glass_gpu import GlassBuffers, GlassView
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import NO_LAMPS, PROBES, taking
 from andon.glare.highlights import stage as highlights
+from andon.glare.highlights.contrast import AmbientLevel
 from andon.glare.highlights.stage import HighlightStage
 from andon.glare.highlights.sum import highlights_of_lamps
+from andon.glare.highlights.tile_stage import TileStage
+from andon.glare.highlights.tiles import Highlight
 from andon.glass.layers import Layered
 from andon.glow.stage import GlowStage
 from andon.gpu.bindings import bind_group
@@ -72,13 +77,19 @@ class _View:
             self.glow = GlowStage(gpu, alone, self.luminance, prepared.glow, view)
             self.filtered = make_texture(gpu, alone.format, view.width, view.height, label="glow")
             self.hide = None if self.glass is None else self.glass.hiding(alone)
+        self.glare: GlareView | None = None
+        shown, through = self.luminance, prepared.exposure.see_through
+        unlit = None if through is None else unlit_linear(frame, prepared.ambient)
+        if prepared.glare is not None:
+            real = None if through is None or unlit is None else ost.real_light(unlit, through)
+            self.glare = GlareView(gpu, prepared.glare, frame, self.luminance, real)
+            shown = self.glare.seen
         self.display: DisplayStage | OstStage
-        if prepared.exposure.see_through is not None:
-            unlit = unlit_linear(frame, prepared.ambient)
-            self.display = OstStage(gpu, self.luminance, frame, prepared.exposure, unlit)
+        if unlit is not None:
+            self.display = OstStage(gpu, shown, frame, prepared.exposure, unlit)
         else:
             self.display = DisplayStage(
-                gpu, self.luminance, frame.response, prepared.exposure, frame.luminance_per_unit
+                gpu, shown, frame.response, prepared.exposure, frame.luminance_per_unit
             )
         own = {0: ("uint", seen.texture.view), 1: ("uniform", seen.view_buffer)}
         groups = [
@@ -99,6 +110,14 @@ class _View:
             variants = options["variants"] | {highlights.SUM: engine.lamps_mirrored}
             own = engine.finishes, groups, STRUCTS, variants
             self.highlights = highlights.HighlightStage(gpu, view, *own)
+            self.tiles = TileStage(
+                gpu,
+                view,
+                self.highlights.alone,
+                self.luminance,
+                seen.view_buffer,
+                frame.luminance_per_unit,
+            )
         entry = self._entry_point(prepared)
         self.relit = FullscreenPass(gpu, FRAME, entry, ["rgba16float"], groups, **options)
         # Half floats end at 65504, sunlight does not, and this picture is for machines.
@@ -218,6 +237,28 @@ class GpuEngine:
         )
         return light.luminance
 
+    def find_highlights(
+        self, frame: CameraFrame, luminance: Texture, moment: Moment, gate: float
+    ) -> tuple[AmbientLevel, list[Highlight]] | None:
+        """The ambient level and the highlights in what `compose` gave; None: nothing mirrors.
+
+        Waits for the device twice.
+        """
+        own, view = self.prepared.highlights, self._views[frame.view.name]
+        if own is None or view.highlights is None:
+            return None
+        self.finish()
+        middles = moment.object_middles
+        lux = own.probe_lux(self.prepared.probes, self.prepared.surface, middles)
+        return view.tiles.find(lux, gate)
+
+    def read_highlights(self, frame: CameraFrame) -> Luminance | None:
+        """Mirrored lamps alone, as they were drawn last."""
+        stage = self._views[frame.view.name].highlights
+        if stage is None:
+            return None
+        return Luminance(stage.alone.read()[..., :3], self.prepared.photometry)
+
     def glass_over(
         self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, moment: Moment
     ) -> Texture:
@@ -244,6 +285,30 @@ class GpuEngine:
                 view.hide.encode_within(self.encoder, [alone], view.glass.within)
             view.glow.encode(self.encoder, view.composite.lamps.within)
         return luminance
+
+    def glare(
+        self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, moment: Moment
+    ) -> Texture:
+        """Records the picture as the observer's eye scatters it; waits to know its sources."""
+        own = self._views[frame.view.name].glare
+        if own is None:
+            return luminance
+        own.encode_sources(self.encoder)
+        self.finish()
+        own.update()
+        own.encode(self.encoder)
+        return own.seen
+
+    def read_glare(self, frame: CameraFrame) -> Luminance | None:
+        """What glare added to the view that was drawn last; for figures, not for frames."""
+        own = self._views[frame.view.name].glare
+        if own is None:
+            return None
+        view = frame.view
+        alone = make_texture(self.gpu, "rgba16float", view.width, view.height, label="glare")
+        own.encode_glare(self.encoder, alone)
+        self.finish()
+        return self._cd_m2(alone, frame)
 
     def encode(self, frame: CameraFrame, luminance: Texture) -> DisplayStage | OstStage:
         """Records the display."""

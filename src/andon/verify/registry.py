@@ -54,6 +54,7 @@ def rows() -> tuple[Row, ...]:
         gaze,
         glare_flicker,
         glare_models,
+        glare_needles,
         glass,
         glass_blur,
         glass_frame,
@@ -87,4 +88,5 @@ def rows() -> tuple[Row, ...]:
         *caustic.ROWS,
         *glare_flicker.ROWS,
         *glare_models.ROWS,
+        *glare_needles.ROWS,
     )

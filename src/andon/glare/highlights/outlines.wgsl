@@ -56,15 +56,17 @@ fn nearest_to_mirror(facet: Facet, reach: vec3f, radius: f32) -> vec3f {
 }
 
 fn held_light(held: Held, facet: Facet, reach: vec3f, radius: f32) -> vec3f {
+  // Lifted to the horizon, an outline straight below would go all the way round it.
+  let risen = select(0.0, 1.0, dot(facet.normal, reach) > -radius);
   if (facet.kind == PHONG) {
-    return abs(held.light) * facet.straight;
+    return risen * abs(held.light) * facet.straight;
   }
   let near = nearest_to_mirror(facet, reach, radius);
   let seen = half_slopes(facet, near);
   let lobe = ggx_slopes(seen.xy);
   let own = weight(facet, near, seen) * lobe;
   let count = max(held.count, 1.0);
-  return abs(held.light) * (own + held.value / count) / (lobe + held.lobe / count);
+  return risen * abs(held.light) * (own + held.value / count) / (lobe + held.lobe / count);
 }
 
 // A closed outline of `CORNERS` corners of one luminance.

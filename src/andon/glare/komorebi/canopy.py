@@ -109,7 +109,14 @@ def _canopy(leaves: Float, labels: NDArray[np.int32], view: View) -> Canopy:
     # Deepest first; among equals those nearer to the middle, so that spots are round.
     off = np.linalg.norm(towards - middles[gap], axis=1)
     order = np.lexsort((off, -depth.ravel()[places], gap))
-    return Canopy(view, leaves, places[order], gap[order], middles, np.bincount(gap, solid, count))
+    return Canopy(
+        view,
+        leaves,
+        places[order],
+        gap[order],
+        middles,
+        np.bincount(gap, solid, count).astype(np.float64),
+    )
 
 
 def _check(shape: tuple[int, ...], view: View) -> None:

@@ -69,19 +69,24 @@ def among_leaves(
     labels = _apart(found.labels, wide > 0)
     most_px = np.pi * (np.radians(LARGEST_DEGREES) / pixel / 2) ** 2
     labels = np.where(np.append(0, found.pixels)[labels] > most_px, 0, labels)
-    if sun is None:
-        near = cv2.GaussianBlur(
-            np.asarray(labels > 0, np.float32), (0, 0), np.radians(AROUND_DEGREES) / pixel
-        )
-        sun = view.directions().reshape(-1, 3)[int(np.argmax(near))]
+    towards_sun = _densest(labels, view, pixel) if sun is None else sun
     x, y = np.minimum(np.rint(found.middles).astype(int), np.array(view.shape[::-1]) - 1).T
     towards = view.directions()[y, x]
-    off = np.linalg.norm(towards - sun, axis=1)
+    off = np.linalg.norm(towards - towards_sun, axis=1)
     off[np.setdiff1d(np.arange(len(off)), np.unique(labels)[1:] - 1)] = np.inf
     order = np.argsort(off, kind="stable")
     order = order[np.isfinite(off[order])]
     taken = _spread(towards[order], np.radians(APART_DEGREES), most)
     return _kept(labels, np.sort(order[taken]) + 1)
+
+
+def _densest(labels: Labels, view: View, pixel: float) -> Float:
+    """(3,) where the gaps have most area within some 5°."""
+    import cv2
+
+    gaps = np.asarray(labels > 0, np.float32)
+    near = cv2.GaussianBlur(gaps, (0, 0), np.radians(AROUND_DEGREES) / pixel)
+    return view.directions().reshape(-1, 3)[int(np.argmax(near))]
 
 
 def _spread(places: Float, apart: float, most: int) -> list[int]:

@@ -58,7 +58,7 @@ def elongation(source: Source, /) -> Elongation:
     ``(λ₁ − λ₂)/(λ₁ + λ₂)`` of their eigenvalues: (a² − b²)/(a² + b²) for an ellipse. The tangent
     plane stands for the sphere.
     """
-    phi = (np.arange(STEPS) + 0.5) * (2 * np.pi / STEPS)
+    phi = (np.arange(STEPS, dtype=np.float64) + 0.5) * (2 * np.pi / STEPS)
     radius = outline_at(source, phi)
     unit = np.stack([np.cos(phi), np.sin(phi)])
     area = np.mean(radius**2) / 2

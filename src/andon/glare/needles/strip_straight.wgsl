@@ -10,11 +10,11 @@ fn clip_of_direction(direction: vec3f) -> vec4f {
 }
 
 // Great circles through the corners at one side bend away from the needle: it stays inside.
-fn strip_corner(needle: NeedleRecord, vertex: u32) -> StripCorner {
+fn strip_corner(needle: NeedleRecord, vertex: u32) -> vec4f {
   let corner = quad_corner(vertex);
   let theta = mix(needle.first, needle.last, corner.x);
   let normal = cross(needle.source, needle.along);
-  let side = (2.0 * corner.y - 1.0) * tan(needle.half_width + constants.margin);
+  let side = (2.0 * corner.y - 1.0) * tan(half_strip(needle));
   let direction = cos(theta) * needle.source + sin(theta) * needle.along + side * normal;
-  return StripCorner(clip_of_direction(direction), vec2f(-4.0, 4.0));
+  return clip_of_direction(direction);
 }

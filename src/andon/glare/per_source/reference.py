@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.glare.kernel import Kernel
 from andon.glare.model import Source
-from andon.glare.needles.records import pixel_radians
 from andon.glare.per_source.coordinates import chord
 from andon.glare.per_source.halos import HaloTable, halo_table
 from andon.glare.per_source.model import PerSource
 from andon.glare.per_source.rings import halo_samples, offsets, reach_chord, rings_of
 from andon.glare.per_source.tables import VeilTable, table_of
+from andon.glare.pixels import pixel_radians
 from andon.observer.spread.model import SpreadFunction
 from andon.spaces import View
 

@@ -24,9 +24,9 @@ class Scattered:
 
     Attributes
     ----------
-    picture : (H, W, 3) cd/m², (1 − k)·L + veil.
-    glare : (H, W, 3) cd/m², what is added.
-    share : (H, W) k of each pixel: the share of its light that is spread.
+    picture : (H, W, 3) cd/m², (1 − k)·L + glare.
+    glare : (H, W, 3) cd/m², what is added: the veil, and of what a pixel scatters within itself.
+    share : (H, W) k of each pixel: that of the kernel, with its core where pixels resolve it.
     """
 
     picture: Float
@@ -41,7 +41,9 @@ def scattered(luminance: NDArray[Any], plan: WholePlan, /) -> Scattered:
     """
     light = np.asarray(luminance, np.float64)
     glare = veil(light, plan)
-    share = resolved(plan)
+    leaves = resolved(plan)
+    share = np.maximum(leaves, plan.kernel.share)
+    glare += (share - leaves)[..., None] * light
     return Scattered((1 - share[..., None]) * light + glare, glare, share)
 
 

@@ -36,8 +36,11 @@ STAYS = {
 
 @dataclass(frozen=True)
 class _Step:
+    """A pass, what it draws into, and the texels that each of its own reads."""
+
     drawn: FullscreenPass
     target: Texture
+    taps: int
 
     def encode(self, encoder: Any) -> None:
         self.drawn.encode(encoder, [self.target.view])
@@ -72,12 +75,13 @@ class WholePictureStage:
         target: Texture,
         resources: Bindings,
         numbers: str = "",
+        taps: int = 0,
     ) -> _Step:
         variants = {NUMBERS: numbers or _numbers(self.plan)}
         group = bind_group(self.gpu, resources, entry)
         path = f"{FOLDER}/{module}.wgsl"
         drawn = FullscreenPass(self.gpu, path, entry, [target.format], [group], variants=variants)
-        return _Step(drawn, target)
+        return _Step(drawn, target, taps)
 
     def _filled(self, values: NDArray[Any], format: str = "rgba32float") -> Any:
         """The view of a texture of these values (rows, columns[, channels])."""
@@ -95,11 +99,11 @@ class WholePictureStage:
             ]
             factors = self._filled(tables.block_factors(self.plan, chart), "r32float")
             inputs = {0: ("float", source.view), 1: ("float", factors)}
-            steps.append(self._pass("light", "reduce_blocks", blocks, inputs))
+            steps.append(self._pass("light", "reduce_blocks", blocks, inputs, taps=17))
             steps.append(self._gathered(chart, blocks, levels[0], roots[0]))
             for finer, coarser, root in zip(levels, levels[1:], roots[1:], strict=False):
                 inputs = {0: ("float", finer.view), 1: ("float", root)}
-                steps.append(self._pass("light", "reduced", coarser, inputs))
+                steps.append(self._pass("light", "reduced", coarser, inputs, taps=17))
         return steps
 
     def _gathered(self, chart: Chart, blocks: Texture, cells: Texture, roots: Any) -> _Step:
@@ -107,7 +111,11 @@ class WholePictureStage:
         views = (blocks.view, roots, self._filled(found.first), self._filled(found.steps))
         inputs = {index: ("float", view) for index, view in enumerate(views)}
         entry = "gathered" if found.size else "gathered_exactly"
-        return self._pass("spline", entry, cells, inputs, _numbers(self.plan, window=found.size))
+        # Exactly: a block and its place, as many as the windows have in the mean.
+        each = 2 * float(np.mean(found.first[..., 2] * found.first[..., 3]))
+        taps = int(np.prod(found.size) if found.size else np.ceil(each)) + 3
+        numbers = _numbers(self.plan, window=found.size)
+        return self._pass("spline", entry, cells, inputs, numbers, taps)
 
     def _far(self) -> list[_Step]:
         """Cells of level F in a row, and the matrix times it; `_far_light`, `_far_places`."""
@@ -122,8 +130,8 @@ class WholePictureStage:
         cells = {0: ("float", lights[0].view), 1: ("float", lights[-1].view), **shared}
         row = {0: ("float", strip.view), 1: ("float", strip.view), **shared}
         return [
-            self._pass("far", "collected", strip, cells),
-            self._pass("far", "far", self._far_light, row),
+            self._pass("far", "collected", strip, cells, taps=3),
+            self._pass("far", "far", self._far_light, row, taps=5 * matrix.shape[1]),
         ]
 
     def _spread(self) -> list[_Step]:
@@ -151,7 +159,8 @@ class WholePictureStage:
             # The first has its √w in alpha of the cells.
             root = self._filled(_root(self.plan, chart, rung), "r32float") if swept else cells.view
             inputs = {0: ("float", cells.view), 1: ("float", root)}
-            steps.append(self._pass("spread", entry, target, inputs, numbers))
+            reads = _reads(level, rung) * (2 if swept else 1)
+            steps.append(self._pass("spread", entry, target, inputs, numbers, reads))
             swept.append(target.view)
         # What the constants leave out is not read, but must be there and not be drawn into.
         unread = far[3]
@@ -160,7 +169,9 @@ class WholePictureStage:
             for index, view in enumerate((*swept, None, None)[:2])
         }
         inputs[2] = unread if above is None else ("float", above)
-        steps.append(self._pass("spread", "accumulated", cells, inputs | far, numbers))
+        reads = sum(_reads(level, rung) for rung in rungs)
+        reads += 4 * (above is not None) + 2 * (level == self.plan.far.level)
+        steps.append(self._pass("spread", "accumulated", cells, inputs | far, numbers, reads))
         return steps
 
     def _seen(self) -> _Step:
@@ -171,7 +182,7 @@ class WholePictureStage:
             places = self._filled(tables.block_places(self.plan, chart))
             inputs[2 * index + 1] = ("float", places)
         entry = "blocks_seen_by_two" if self.plan.pair else "blocks_seen"
-        return self._pass("seen", entry, self._veil, inputs)
+        return self._pass("seen", entry, self._veil, inputs, taps=10 * len(self.plan.charts))
 
     def _last(self, source: Texture) -> tuple[FullscreenPass, FullscreenPass, FullscreenPass]:
         """The picture itself; the veil on top of it; the veil alone."""
@@ -206,6 +217,16 @@ class WholePictureStage:
         self._encode_veil(encoder)
         self._alone.encode(encoder, [texture.view])
 
+    def cost(self) -> tuple[int, int]:
+        """Texels read and bytes read and written for a picture."""
+        width, height = self.plan.view.width, self.plan.view.height
+        texels = [(step.target.width * step.target.height, step.taps) for step in self._steps]
+        taps = sum(count * each for count, each in texels)
+        written = sum(count for count, _ in texels)
+        # The picture: read, written, read and written again; a sample of the veil is four texels.
+        pixels = width * height
+        return taps + 6 * pixels, 16 * (taps + written) + 8 * 8 * pixels
+
     def _encode_veil(self, encoder: Any) -> None:
         for step in self._steps:
             step.encode(encoder)
@@ -223,6 +244,10 @@ def _rungs(plan: WholePlan, level: int) -> list[Rung]:
 def _root(plan: WholePlan, chart: Chart, rung: Rung) -> NDArray[np.float64]:
     """√w of the cells of a rung's level."""
     return plan.root(rung, chart.scale(chart.cell_directions(rung.level)))
+
+
+def _reads(level: int, rung: Rung) -> int:
+    return 2 * len(filters(level)[rung.which]) - 1
 
 
 def _first_root(plan: WholePlan, chart: Chart, level: int) -> NDArray[np.float64]:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from andon.observer.spread import cie146, paper, spencer
+from andon.observer.spread import cie146, ijspeert, paper, spencer
 from andon.observer.spread.angles import integral
 from andon.observer.spread.family import scattered_share, spread_function
 from andon.observer.spread.model import Eye
@@ -68,9 +68,12 @@ def _integrals() -> float:
         errors += [integral(_channel(halo, i)) - 1 for i in range(3)]
     for age in (0.0, 25.0, 70.0, 120.0):
         for pupil_mm in (2.0, 5.0, 8.0):
-            eye = Eye(age, pupil_mm=pupil_mm)
-            errors.append(scattered_share(spread_function("ijspeert", eye), 0.0) - 1)
+            errors.append(integral(_ijspeert(age, pupil_mm)) - 1)
     return float(np.abs(errors).max())
+
+
+def _ijspeert(age: float, pupil_mm: float) -> Callable[[ArrayLike], Float]:
+    return lambda theta: ijspeert.ijspeert(theta, age, 0.5, pupil_mm)
 
 
 def _channel(halo: Callable[[ArrayLike], Float], index: int) -> Callable[[ArrayLike], Float]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from andon.glare.gate import gate
 from andon.glare.kernel import Kernel
+from andon.glare.model import Source
 from andon.glare.needles import NeedleModel, needles_of
 from andon.glare.needles.model import Which
 from andon.glare.needles.reference import draw
@@ -25,6 +26,10 @@ Float = NDArray[np.float64]
 
 # So many sources have a halo and needles, from the strongest on: those of the others are faint.
 MOST_STARS = 32
+# Radii in degrees between which halos fade: every point of a source has its own ring, and the rings
+# of one that is as wide as they are (3°) fill each other's middle. A ring at the outline would be
+# seen around façades that in truth have none.
+RING_SEEN_DEGREES, RING_LOST_DEGREES = 0.75, 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,12 +72,20 @@ def stars_of(
     seen = [star for star in stars if len(star)]
     added = draw(seen, view)
     weights = gate(photometric(found.luminance_cd_m2[: len(strongest)]), ambient)
+    weights = weights * np.array([_ring_seen(source) for source in strongest])
     has_halo = kernel.spread.halo_per_sr is not None and len(strongest) > 0
     if has_halo:
         added += halos_of_sources(strongest, view, kernel, kernel.spread, weights=weights.tolist())
         shares[1 : len(strongest) + 1] += weights[:, None] * _halo_share(kernel)
     halos = int(np.count_nonzero(weights)) if has_halo else 0
     return Stars(added, shares[found.labels], halos, len(seen))
+
+
+def _ring_seen(source: Source) -> float:
+    """1 for a small source, 0 for a wide one."""
+    radius = float(np.degrees(source.outline.radii_radians.max()))
+    span = RING_LOST_DEGREES - RING_SEEN_DEGREES
+    return float(np.clip((RING_LOST_DEGREES - radius) / span, 0, 1))
 
 
 def _halo_share(kernel: Kernel) -> Float:

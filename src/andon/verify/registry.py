@@ -53,6 +53,7 @@ def rows() -> tuple[Row, ...]:
         caustic,
         gaze,
         glare_flicker,
+        glare_whole,
         glare_models,
         glass,
         glass_blur,
@@ -86,5 +87,6 @@ def rows() -> tuple[Row, ...]:
         *glass_frame.ROWS,
         *caustic.ROWS,
         *glare_flicker.ROWS,
+        *glare_whole.ROWS,
         *glare_models.ROWS,
     )

@@ -61,8 +61,11 @@ def scatter_all(light: Float, view: View, kernel: Kernel, engine: EngineName, /)
     """Scatters all light (H, W, 3), finite and ≥ 0, of a picture of `view`."""
     plan = plan_whole(view, kernel)
     on_gpu = engine == "gpu" or (engine == "auto" and _has_gpu())
-    spread = _veil_on_gpu(light, plan) if on_gpu else veil_of_all(light, plan)
-    return _summed(light, spread, resolved(plan), view, kernel, "gpu" if on_gpu else "reference")
+    if on_gpu:
+        spread, left = _veil_on_gpu(light, plan)
+    else:
+        spread, left = veil_of_all(light, plan), resolved(plan)
+    return _summed(light, spread, left, view, kernel, "gpu" if on_gpu else "reference")
 
 
 def scatter_sources(light: Float, view: View, kernel: Kernel, found: FoundSources, /) -> Scatter:
@@ -91,7 +94,8 @@ def _has_gpu() -> bool:
     return adapter_summary() is not None
 
 
-def _veil_on_gpu(light: Float, plan: WholePlan) -> Float:
+def _veil_on_gpu(light: Float, plan: WholePlan) -> tuple[Float, Float]:
+    """(H, W, 3) what comes to the pixels, (H, W) the share that leaves each."""
     from andon.glare.whole_picture.stage import WholePictureStage
     from andon.gpu.device import open_gpu
     from andon.gpu.textures import make_texture
@@ -106,4 +110,5 @@ def _veil_on_gpu(light: Float, plan: WholePlan) -> Float:
     encoder = gpu.device.create_command_encoder()
     stage.encode_glare(encoder, target)
     gpu.device.queue.submit([encoder.finish()])
-    return target.read()[..., :3].astype(np.float64) / scale
+    drawn = target.read().astype(np.float64)
+    return drawn[..., :3] / scale, 1 - drawn[..., 3]

@@ -87,7 +87,7 @@ def point_veil(plan: WholePlan, place: Place, /) -> PointVeil:
     offsets = (-TENT_AT, 0.0, TENT_AT)
     for x, across in zip(offsets, TENT_WEIGHTS, strict=True):
         for y, along in zip(offsets, TENT_WEIGHTS, strict=True):
-            seen = view.directions_at(view.pixel_grid() + (x, y))
+            seen = view.directions_at(view.pixel_grid() + np.array([x, y]))
             model += across * along * plan.kernel.per_sr(_angle(seen, source), core=True)
     counts &= model > 0
     ratio = np.divide(veil(light, plan)[..., 1], model, where=counts, out=np.ones(view.shape))

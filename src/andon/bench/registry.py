@@ -80,3 +80,17 @@ def rows() -> tuple[BenchRow, ...]:
 
     light = relight.ROWS + areas.ROWS + glow.ROWS
     return light + glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS + glare.ROWS
+    from andon.bench import (
+        areas,
+        glare_needles,
+        glass,
+        glass_frame,
+        glow,
+        probe_light,
+        probes,
+        relight,
+    )
+
+    light = relight.ROWS + areas.ROWS + glow.ROWS
+    rest = glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS
+    return light + rest + glare_needles.ROWS

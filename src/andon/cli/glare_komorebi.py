@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from andon.cli.options import takes
+from andon.cli.options import EngineOption, takes
 
 __all__ = ["KomorebiOptions", "komorebi"]
 
@@ -68,6 +68,7 @@ class KomorebiOptions:
     exposure: Annotated[
         str, typer.Option(metavar="auto|NUMBER", help="Screen value (0…1, linear) per cd/m².")
     ] = "auto"
+    engine: EngineOption = "auto"
 
 
 @takes(KomorebiOptions)

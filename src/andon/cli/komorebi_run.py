@@ -12,9 +12,11 @@ from andon.cli.film import check_film, frame_moments, write_film
 from andon.cli.glare import GlareOptions
 from andon.cli.glare_komorebi import KomorebiOptions
 from andon.cli.glare_typed import exposure_of, eye_of, gaze_of, model_of, view_of
-from andon.errors import InputError
+from andon.errors import InputError, MachineError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from andon.glare.komorebi import Canopy, Komorebi
     from andon.glare.komorebi.seen import Seen
     from andon.lamps.flicker import Flicker
@@ -33,10 +35,12 @@ def run(options: KomorebiOptions) -> None:
     _tell(seen.komorebi, scale)
     height, width = canopy.view.shape
 
+    picture = _drawn_by(seen, options.engine)
+
     def draw(time_seconds: float) -> NDArray[np.uint8]:
         from andon.cli.glare_outputs import exposed
 
-        return exposed(seen.picture(time_seconds), scale, "reinhard")
+        return exposed(picture(time_seconds), scale, "reinhard")
 
     write_film(options.out, draw, times, options.frames_per_second, 3 * height * width)
     print(options.out)
@@ -121,6 +125,21 @@ def _seen(options: KomorebiOptions, canopy: Canopy) -> Seen:
     shown = Komorebi(canopy, sun, flicker, exposure_seconds=1 / options.frames_per_second)
     eye = eye_of(_of_glare(options), options.age, ambient_of(canopy))
     return Seen(shown, eye, options.model, options.seed)
+
+
+def _drawn_by(seen: Seen, engine: str) -> Callable[[float], NDArray[np.float64]]:
+    """What draws moments: the GPU where there is one, unless the reference is asked for."""
+    if engine == "reference":
+        return seen.picture
+    from andon.glare.komorebi.stage import SeenStage
+    from andon.gpu.device import open_gpu
+
+    try:
+        return SeenStage(open_gpu(), seen).picture
+    except MachineError:
+        if engine == "gpu":
+            raise
+        return seen.picture
 
 
 def _tell(shown: Komorebi, scale: float) -> None:

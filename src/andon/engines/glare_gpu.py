@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.engines.glare import MOST_SOURCES, SceneGlare
-from andon.glare.model import Source
 from andon.glare.needles.stage import NeedleStage
+from andon.glare.sources.live import LiveSources
 from andon.glare.sources.stage import SourceStage
 from andon.glare.whole_picture.stage import WholePictureStage
 from andon.gpu.bindings import bind_group
@@ -33,7 +33,7 @@ class GlareView:
     Attributes
     ----------
     seen : rgba16float, the picture as the eye has it.
-    sources : of the frame that was drawn last, strongest first.
+    found : sources of the frame that was drawn last.
     """
 
     def __init__(
@@ -48,12 +48,12 @@ class GlareView:
         view, per_unit = frame.view, frame.luminance_per_unit
         self.gpu, self.glare, self.view = gpu, glare, view
         self.seen = make_texture(gpu, "rgba16float", view.width, view.height, label="seen")
-        self.sources: list[Source] = []
+        self.found = LiveSources(0.0)
         self._see_through: _SeeThrough | None = None
         if real_linear is not None:
             self._see_through = _SeeThrough(gpu, light, real_linear, self.seen)
             light = self._see_through.virtual
-        self._find = SourceStage(gpu, light, view, glare.threshold_cd_m2, per_unit)
+        self._find = SourceStage(gpu, light, glare.finder(view), per_unit)
         self._veil = WholePictureStage(gpu, light, self.seen, glare.plans[view.name])
         self._needles: NeedleStage | None = None
         if glare.needles is not None:
@@ -70,9 +70,9 @@ class GlareView:
 
     def update(self) -> None:
         """Finds the sources, once what was recorded has run."""
-        self.sources = self._find.read(MOST_SOURCES)
+        self.found = self._find.read()
         if self._needles is not None:
-            self._needles.update(self.glare.needles_of(self.sources, self.view))
+            self._needles.update(self.glare.needles_of(self.found, self.view))
 
     def encode(self, encoder: Any) -> None:
         """Records the picture as it is seen."""

@@ -26,6 +26,8 @@ from andon.glare.highlights.tiles import (
     survey_tiles,
     threshold_cd_m2,
 )
+from andon.glare.needles.reference import draw as draw_needles
+from andon.glare.sources.survey import survey
 from andon.glare.whole_picture import reference as whole_picture
 from andon.glass import reference as glass
 from andon.glass.backdrops.model import SceneOfView
@@ -262,7 +264,8 @@ class ReferenceEngine:
             real = frame.luminance_per_unit * ost.real_light(unlit, through)
             light = np.maximum(all_light - real, 0)
         whole = whole_picture.scattered(light, own.plans[frame.view.name])
-        added = whole.glare + own.around_sources(light, frame.view)
+        found = own.finder(frame.view).find(survey(light), lambda y, x: light[y, x])
+        added = whole.glare + draw_needles(own.needles_of(found, frame.view), frame.view)
         self._glare = Luminance(added, word)
         if through is not None:
             return Luminance(all_light + added, word)

@@ -55,6 +55,7 @@ def rows() -> tuple[Row, ...]:
         glare_flicker,
         glare_whole,
         glare_models,
+        glare_needles,
         glass,
         glass_blur,
         glass_frame,
@@ -89,4 +90,5 @@ def rows() -> tuple[Row, ...]:
         *glare_flicker.ROWS,
         *glare_whole.ROWS,
         *glare_models.ROWS,
+        *glare_needles.ROWS,
     )

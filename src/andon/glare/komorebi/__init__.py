@@ -3,8 +3,8 @@
 ::
 
     mask ─────┐
-    picture ──┼▶ Canopy: leaves, gaps ─┬─ picture(t) ─▶ luminance of leaves and open gaps
-    list ─────┘                        └─ sources(t) ─▶ Source of each gap, for halo and needles
+    picture ──┼▶ Canopy: leaves, gaps ─┬─ picture(t) ─▶ luminance of leaves and open gaps ─▶ bloom
+    list ─────┘                        └─ sources(t) ─▶ Source of each gap ─▶ needles
 
 What
     n gaps, each with a 1/f flicker S_i(t) of its own (`andon.lamps.flicker`): the share of its area

@@ -1,4 +1,8 @@
-"""A canopy as an eye sees it: leaves and sun, with bloom, halo and needles."""
+"""A canopy as an eye sees it: leaves and sun, with bloom and needles.
+
+There is no halo: the ring of the lens shows to wide pupils, and in daylight there are none (Spencer
+et al. 1995 give it no light in photopic adaptation).
+"""
 
 from __future__ import annotations
 
@@ -11,13 +15,12 @@ from numpy.typing import NDArray
 from andon.glare.kernel import Kernel
 from andon.glare.komorebi.canopy import Canopy
 from andon.glare.komorebi.model import Komorebi
-from andon.glare.model import Source
 from andon.glare.needles import needles_of
 from andon.glare.needles.model import Needles
 from andon.glare.needles.reference import draw
 from andon.glare.sources.find import background_luminance
 from andon.glare.whole_picture.plan import WholePlan, plan_whole
-from andon.glare.whole_picture.reference import resolved, veil
+from andon.glare.whole_picture.reference import scattered
 from andon.observer.spread.family import spread_function
 from andon.observer.spread.model import Eye
 from andon.quantities import photometric
@@ -65,24 +68,21 @@ class Seen:
         return float(1 / max(np.percentile(light, SKY_PERCENTILE), 1e-30))
 
     @cached_property
-    def _plan(self) -> WholePlan:
+    def plan(self) -> WholePlan:
+        """Of the bloom, for both engines."""
         spread = spread_function(self.model, self.eye)
         return plan_whole(self.komorebi.canopy.view, Kernel(spread))
 
-    @cached_property
-    def _share(self) -> Float:
-        return resolved(self._plan)[..., None]
-
-    def needles(self, sources: tuple[Source, ...], /) -> list[Needles]:
-        """Of each source that is bright enough."""
-        return [needles_of(each, self.eye, self.ambient_cd_m2, self.seed) for each in sources]
+    def parts(self, time_seconds: float, /) -> tuple[Float, list[Needles]]:
+        """(H, W, 3) cd/m² of what blooms, and the needles, whose light it has not."""
+        light = self.komorebi.picture(time_seconds)
+        sources, canopy = self.komorebi.sources(time_seconds), self.komorebi.canopy
+        stars = [needles_of(each, self.eye, self.ambient_cd_m2, self.seed) for each in sources]
+        lost = np.array([star.share for star in stars])[canopy.gap][:, None]
+        light.reshape(-1, 3)[canopy.pixels] *= 1 - lost
+        return light, stars
 
     def picture(self, time_seconds: float, /) -> Float:
         """(H, W, 3) cd/m²; light of bloom and needles is taken from where it came from."""
-        light = self.komorebi.picture(time_seconds)
-        stars = self.needles(self.komorebi.sources(time_seconds))
-        canopy = self.komorebi.canopy
-        lost = np.array([star.share for star in stars])[canopy.gap][:, None]
-        bloom = veil(light, self._plan)
-        light.reshape(-1, 3)[canopy.pixels] *= 1 - lost
-        return (1 - self._share) * light + bloom + draw(stars, canopy.view)
+        light, stars = self.parts(time_seconds)
+        return scattered(light, self.plan).picture + draw(stars, self.komorebi.canopy.view)

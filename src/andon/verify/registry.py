@@ -53,6 +53,7 @@ def rows() -> tuple[Row, ...]:
         caustic,
         gaze,
         glare_flicker,
+        glare_highlights,
         glare_models,
         glare_needles,
         glass,
@@ -87,6 +88,7 @@ def rows() -> tuple[Row, ...]:
         *glass_frame.ROWS,
         *caustic.ROWS,
         *glare_flicker.ROWS,
+        *glare_highlights.ROWS,
         *glare_models.ROWS,
         *glare_needles.ROWS,
     )

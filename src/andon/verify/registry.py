@@ -53,6 +53,7 @@ def rows() -> tuple[Row, ...]:
         caustic,
         gaze,
         glare_flicker,
+        glare_highlights,
         glare_models,
         glare_needles,
         glare_picture,
@@ -91,6 +92,7 @@ def rows() -> tuple[Row, ...]:
         *glare_flicker.ROWS,
         *glare_picture.ROWS,
         *glare_whole.ROWS,
+        *glare_highlights.ROWS,
         *glare_models.ROWS,
         *glare_needles.ROWS,
     )

@@ -21,7 +21,7 @@ PIGMENTS = {"brown": 0.5, "blue": 1.2}
 GLASSES: dict[str, tuple[Glasses, float]] = {
     "none": ("none", 0.0),
     "myopic": ("spectacles", -3.0),
-    "contact": ("contact-lenses", 0.0),
+    "contact": ("contact-lenses", -3.0),
 }
 MOST_AGES = 8
 

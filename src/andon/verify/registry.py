@@ -55,6 +55,7 @@ def rows() -> tuple[Row, ...]:
         glare_flicker,
         glare_models,
         glare_needles,
+        glare_numbers,
         glass,
         glass_blur,
         glass_frame,
@@ -89,4 +90,5 @@ def rows() -> tuple[Row, ...]:
         *glare_flicker.ROWS,
         *glare_models.ROWS,
         *glare_needles.ROWS,
+        *glare_numbers.ROWS,
     )

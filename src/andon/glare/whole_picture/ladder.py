@@ -2,8 +2,8 @@
 
 A *rung* is a filter of a level: rung k has σ_k = a·s_k, ``s_k = sigma_cells·2^(level−1)·cell``
 (and what blocks of pixels add, which tells only in the first two), and takes
-``W(σ_k)·χ(s_k)·(ln s_{k+1} − ln s_{k−1})/2`` of a point's light. χ goes from 1 to 0 over a few coarse
-cells, whose angle goes with a as well; the rest of the mixture is the far part's.
+``W(σ_k)·χ(s_k)·(ln s_{k+1} − ln s_{k−1})/2`` of a point's light. χ goes from 1 to 0 over a few
+coarse cells, whose angle goes with a as well; the rest of the mixture is the far part's.
 """
 
 from __future__ import annotations

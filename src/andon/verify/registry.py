@@ -58,6 +58,7 @@ def rows() -> tuple[Row, ...]:
         glare_needles,
         glare_picture,
         glare_whole,
+        glare_numbers,
         glass,
         glass_blur,
         glass_frame,
@@ -95,4 +96,5 @@ def rows() -> tuple[Row, ...]:
         *glare_highlights.ROWS,
         *glare_models.ROWS,
         *glare_needles.ROWS,
+        *glare_numbers.ROWS,
     )

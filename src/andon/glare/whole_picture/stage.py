@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.glare.whole_picture import tables
 from andon.glare.whole_picture.charts import MARGIN, Chart, block_shape
-from andon.glare.whole_picture.plan import WholePlan
 from andon.glare.whole_picture.ladder import Rung
+from andon.glare.whole_picture.plan import WholePlan
 from andon.glare.whole_picture.splines import filters
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu

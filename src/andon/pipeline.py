@@ -97,6 +97,7 @@ class Frame:
     glow : the same as the glow filters it; None without a glow.
     glare : what the eye of [observer] adds: veil, halo and needles, cd/m²; None without glare.
     glass : the images that glass shows, sharp; None without glass.
+    highlights : mirrored lamps alone, cd/m²; None where nothing mirrors.
     seen : what the eye gets through an optical see-through display; None for a video one.
     """
 
@@ -111,6 +112,7 @@ class Frame:
     glare: Luminance | None = None
     seen: Seen | None = None
     glass: Layered | None = None
+    highlights: Luminance | None = None
 
 
 class Renderer:
@@ -204,6 +206,7 @@ class Renderer:
             self._engine.read_glare(captured),
             seen,
             layered,
+            self._engine.read_highlights(captured),
         )
 
     def picture(self, time_seconds: float = 0.0, view: str | None = None) -> NDArray[np.uint8]:

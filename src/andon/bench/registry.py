@@ -76,7 +76,21 @@ class BenchRow:
 
 def rows() -> tuple[BenchRow, ...]:
     """All rows, stage by stage."""
-    from andon.bench import areas, glass, glass_frame, glow, probe_light, probes, relight
+    from andon.bench import areas, glare, glass, glass_frame, glow, probe_light, probes, relight
 
     light = relight.ROWS + areas.ROWS + glow.ROWS
-    return light + glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS
+    return light + glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS + glare.ROWS
+    from andon.bench import (
+        areas,
+        glare_needles,
+        glass,
+        glass_frame,
+        glow,
+        probe_light,
+        probes,
+        relight,
+    )
+
+    light = relight.ROWS + areas.ROWS + glow.ROWS
+    rest = glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS
+    return light + rest + glare_needles.ROWS

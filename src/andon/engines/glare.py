@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -12,12 +12,9 @@ from numpy.typing import NDArray
 from andon.engines.adaptation import adaptation_cd_m2
 from andon.errors import InputError
 from andon.glare.kernel import Kernel
-from andon.glare.model import Source
 from andon.glare.needles.determinants import needles_of
 from andon.glare.needles.model import NeedleModel, Needles, Which
-from andon.glare.needles.reference import draw as draw_needles
-from andon.glare.sources.find import background_luminance
-from andon.glare.sources.live import sources_of_bright
+from andon.glare.sources.live import LiveSources, SourceFinder
 from andon.glare.whole_picture.plan import WholePlan, plan_whole
 from andon.observer.presets import eye_of
 from andon.observer.spread.family import spread_function
@@ -43,7 +40,6 @@ class SceneGlare:
     Attributes
     ----------
     eye, kernel : whose eye, and how it scatters.
-    ambient_cd_m2 : what it is adapted to, in the unit of the scene.
     renderer : of the bloom.
     contrast : luminance of a source over the ambient from which it has halo and needles.
     needles : constants; None: no needles.
@@ -53,33 +49,17 @@ class SceneGlare:
 
     eye: Eye
     kernel: Kernel
-    ambient_cd_m2: float
     renderer: Literal["per-source", "whole-picture"]
     contrast: float
     needles: NeedleModel | None
     seed: int
     plans: Mapping[str, WholePlan]
 
-    @property
-    def threshold_cd_m2(self) -> float:
-        """Luminance from which a pixel belongs to a source."""
-        return self.contrast * self.ambient_cd_m2
+    def finder(self, view: View, /) -> SourceFinder:
+        """What finds the sources of a view's frames."""
+        return SourceFinder(view, contrast=self.contrast, most=MOST_SOURCES)
 
-    def sources(self, light: Float, view: View, /) -> list[Source]:
-        """The strongest sources in `light` (H, W, 3) cd/m²."""
-        return sources_of_bright(
-            photometric(light) > self.threshold_cd_m2,
-            lambda rows, columns: light[rows, columns],
-            view.solid_angles(),
-            view,
-            most=MOST_SOURCES,
-        )
-
-    def around_sources(self, light: Float, view: View, /) -> Float:
-        """(H, W, 3) cd/m² of needles around the sources in `light` (H, W, 3)."""
-        return draw_needles(self.needles_of(self.sources(light, view), view), view)
-
-    def needles_of(self, sources: Sequence[Source], view: View, /) -> tuple[Needles, ...]:
+    def needles_of(self, found: LiveSources, view: View, /) -> tuple[Needles, ...]:
         """Needles of each source, as the eye of a view sees them."""
         if self.needles is None:
             return ()
@@ -88,9 +68,9 @@ class SceneGlare:
         )
         return tuple(
             needles_of(
-                source, self.eye, self.ambient_cd_m2, self.seed, which=which, model=self.needles
+                source, self.eye, found.ambient_cd_m2, self.seed, which=which, model=self.needles
             )
-            for source in sources[:MOST_SOURCES]
+            for source in found.sources
         )
 
 
@@ -118,29 +98,12 @@ def glare_of(
     return SceneGlare(
         eye,
         kernel,
-        _ambient(scene, frames, dimming),
         "whole-picture" if whole else "per-source",
         table.highlight_contrast,
         replace(NeedleModel(), contrast=table.highlight_contrast) if table.needles else None,
         scene.scene.seed if table.seed is None else table.seed,
         {name: plan_whole(frame.view, kernel) for name, frame in frames.items()} if whole else {},
     )
-
-
-def _ambient(
-    scene: Scene, frames: Mapping[str, CameraFrame], dimming: NDArray[np.float64]
-) -> float:
-    """What stands behind bright things: the mean without them, cd/m² of the scene's unit."""
-    if not scene.has_photograph:
-        return adaptation_cd_m2(scene, frames, dimming)
-    means = [
-        background_luminance(
-            photometric(frame.linear * dimming) * frame.luminance_per_unit,
-            frame.view.solid_angles(),
-        )
-        for frame in frames.values()
-    ]
-    return float(np.mean(means))
 
 
 def with_clipped_light(scene: Scene, frame: CameraFrame, /) -> CameraFrame:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from andon import gbuffer
 from andon.composite import stage as composite
 from andon.composite.reference import unlit_linear
+from andon.display import ost
 from andon.display.model import Seen
 from andon.display.ost_stage import OstStage
 from andon.display.stage import DisplayStage
@@ -20,11 +21,14 @@ from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import NO_LAMPS, PROBES, taking
 from andon.glare.highlights import stage as highlights
+from andon.glare.highlights.contrast import AmbientLevel
 from andon.glare.highlights.stage import HighlightStage
 from andon.glare.highlights.sum import highlights_of_lamps
+from andon.glare.highlights.tile_stage import TileStage
+from andon.glare.highlights.tiles import Highlight
 from andon.glass.layers import Layered
 from andon.glow.stage import GlowStage
-from andon.gpu.bindings import bind_group
+from andon.gpu.bindings import BindGroup, bind_group
 from andon.gpu.device import open_gpu
 from andon.gpu.passes import FullscreenPass
 from andon.gpu.textures import Texture, make_texture
@@ -74,13 +78,14 @@ class _View:
             self.filtered = make_texture(gpu, alone.format, view.width, view.height, label="glow")
             self.hide = None if self.glass is None else self.glass.hiding(alone)
         self.glare: GlareView | None = None
-        shown = self.luminance
+        shown, through = self.luminance, prepared.exposure.see_through
+        unlit = None if through is None else unlit_linear(frame, prepared.ambient)
         if prepared.glare is not None:
-            self.glare = GlareView(gpu, prepared.glare, frame, self.luminance)
+            real = None if through is None or unlit is None else ost.real_light(unlit, through)
+            self.glare = GlareView(gpu, prepared.glare, frame, self.luminance, real)
             shown = self.glare.seen
         self.display: DisplayStage | OstStage
-        if prepared.exposure.see_through is not None:
-            unlit = unlit_linear(frame, prepared.ambient)
+        if unlit is not None:
             self.display = OstStage(gpu, shown, frame, prepared.exposure, unlit)
         else:
             self.display = DisplayStage(
@@ -100,17 +105,31 @@ class _View:
             "structs": STRUCTS,
             "variants": gbuffer.projection_variant(view) | engine.variants,
         }
-        self.highlights: HighlightStage | None = None
-        if engine.finishes is not None:
-            variants = options["variants"] | {highlights.SUM: engine.lamps_mirrored}
-            own = engine.finishes, groups, STRUCTS, variants
-            self.highlights = highlights.HighlightStage(gpu, view, *own)
+        self._make_highlights(engine, groups, options["variants"])
         entry = self._entry_point(prepared)
         self.relit = FullscreenPass(gpu, FRAME, entry, ["rgba16float"], groups, **options)
         # Half floats end at 65504, sunlight does not, and this picture is for machines.
         self.lux_map = make_texture(gpu, "rgba32float", view.width, view.height, label="lux")
         self.lux = FullscreenPass(
             gpu, FRAME, "illuminance_map", [self.lux_map.format], groups, **options
+        )
+
+    def _make_highlights(
+        self, engine: GpuEngine, groups: list[BindGroup], variants: dict[str, str]
+    ) -> None:
+        self.highlights: HighlightStage | None = None
+        if engine.finishes is None:
+            return
+        gpu, frame = engine.gpu, self.frame
+        own = engine.finishes, groups, STRUCTS, variants | {highlights.SUM: engine.lamps_mirrored}
+        self.highlights = highlights.HighlightStage(gpu, frame.view, *own)
+        self.tiles = TileStage(
+            gpu,
+            frame.view,
+            self.highlights.alone,
+            self.luminance,
+            self.surface.surface.view_buffer,
+            frame.luminance_per_unit,
         )
 
     def changed_rectangles(self, moment: Moment) -> list[Rectangle]:
@@ -223,6 +242,28 @@ class GpuEngine:
             self.encoder, light.luminance.view, seen, moment.lamps, frame.luminance_per_unit
         )
         return light.luminance
+
+    def find_highlights(
+        self, frame: CameraFrame, luminance: Texture, moment: Moment, gate: float
+    ) -> tuple[AmbientLevel, list[Highlight]] | None:
+        """The ambient level and the highlights in what `compose` gave; None: nothing mirrors.
+
+        Waits for the device twice.
+        """
+        own, view = self.prepared.highlights, self._views[frame.view.name]
+        if own is None or view.highlights is None:
+            return None
+        self.finish()
+        middles = moment.object_middles
+        lux = own.probe_lux(self.prepared.probes, self.prepared.surface, middles)
+        return view.tiles.find(lux, gate)
+
+    def read_highlights(self, frame: CameraFrame) -> Luminance | None:
+        """Mirrored lamps alone, as they were drawn last."""
+        stage = self._views[frame.view.name].highlights
+        if stage is None:
+            return None
+        return Luminance(stage.alone.read()[..., :3], self.prepared.photometry)
 
     def glass_over(
         self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, moment: Moment

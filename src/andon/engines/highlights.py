@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
+from andon.engines.probes import SceneProbes
 from andon.glare.highlights.model import LEAST_ALPHA, Finish
 from andon.glare.highlights.waves import make_waves
 from andon.quantities import Material
@@ -15,8 +17,11 @@ from andon.scene import Scene
 from andon.scene.keyframes import object_at
 from andon.scene.objects import SceneObject
 from andon.surface.model import SurfaceModel
+from andon.transport.probes.light import probe_coefficients
 
 __all__ = ["SceneHighlights", "finish_of", "highlights_of"]
+
+Float = NDArray[np.float64]
 
 ANISOTROPY = "KHR_materials_anisotropy"
 
@@ -34,6 +39,27 @@ class SceneHighlights:
     finishes: tuple[Finish | None, ...]
     entries: tuple[SceneObject | None, ...]
 
+    def probe_lux(
+        self, probes: SceneProbes | None, surface: SurfaceModel, middles: Float, /
+    ) -> Float | None:
+        """(m, 3) lux of probes at the mirroring objects that they light; None without any.
+
+        The mean over all directions, at the objects' `middles` (objects, 3).
+        """
+        if probes is None:
+            return None
+        mirroring = {
+            int(surface.object_of_slot[slot])
+            for slot, finish in enumerate(self.finishes)
+            if finish is not None
+        }
+        chosen = [row for row in mirroring if surface.objects_table[row].lit_by_probes]
+        if not chosen:
+            return None
+        # The first coefficient is the mean luminance times √(4π).
+        mean = probe_coefficients(probes.dimmed, middles[chosen])[:, 0] / np.sqrt(4 * np.pi)
+        return np.pi * np.maximum(mean, 0)
+
     def at(self, time_seconds: float, /) -> tuple[Finish | None, ...]:
         """The finishes with their axes in the world."""
         if not self._is_brushed:
@@ -50,7 +76,7 @@ class SceneHighlights:
         return any(finish is not None and finish.axis is not None for finish in self.finishes)
 
 
-def _turned(axis: np.ndarray, entry: SceneObject, time_seconds: float) -> np.ndarray:
+def _turned(axis: Float, entry: SceneObject, time_seconds: float) -> Float:
     turned = object_at(entry, time_seconds)[:3, :3] @ axis
     return turned / np.linalg.norm(turned)
 
@@ -99,10 +125,9 @@ def finish_of(entry: SceneObject, material: Material, seed: int, /) -> Finish | 
         return Finish(alpha=(alpha, alpha), metallic=metallic, takes_lamps=takes)
     strength = float(material.extensions.get(ANISOTROPY, {}).get("anisotropyStrength", 0.0))
     strength = strength or entry.anisotropy
-    # As the extension has it: rougher across, the same along the scratches' normal plane.
+    # The extension's formula. A scratch spreads light across itself.
     rough = alpha + (1 - alpha) * strength**2
     axis = np.array(entry.brush, float)
-    # A scratch spreads light across itself.
     return Finish(
         alpha=(rough, alpha),
         metallic=metallic,

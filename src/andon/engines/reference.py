@@ -16,8 +16,18 @@ from andon.engines.glass import SceneGlass
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import lampless_pixels, lit_pixels
+from andon.glare.highlights.contrast import AmbientLevel
 from andon.glare.highlights.facets import Facets
 from andon.glare.highlights.reference import Mirrored, facing_lux, mirrored_picture
+from andon.glare.highlights.tiles import (
+    Highlight,
+    highlights_of_tiles,
+    light_tiles,
+    survey_tiles,
+    threshold_cd_m2,
+)
+from andon.glare.needles.reference import draw as draw_needles
+from andon.glare.sources.survey import survey
 from andon.glare.whole_picture import reference as whole_picture
 from andon.glass import reference as glass
 from andon.glass.backdrops.model import SceneOfView
@@ -132,6 +142,25 @@ class ReferenceEngine:
             frozenset() if probes is None else probes.captured,
         )
 
+    def find_highlights(
+        self, frame: CameraFrame, luminance: Luminance, moment: Moment, gate: float
+    ) -> tuple[AmbientLevel, list[Highlight]] | None:
+        """The ambient level and the highlights in what `compose` gave; None: nothing mirrors."""
+        own, found, view = self.prepared.highlights, self._mirrored, frame.view
+        if own is None or found is None:
+            return None
+        survey = survey_tiles(view, np.asarray(luminance.cd_m2, np.float64), found.lamps_cd_m2)
+        middles = moment.object_middles
+        lux = own.probe_lux(self.prepared.probes, self.prepared.surface, middles)
+        ambient = survey.ambient(lux, gate)
+        light = light_tiles(view, found.lamps_cd_m2, threshold_cd_m2(ambient, gate))
+        return ambient, highlights_of_tiles(light, survey, ambient, view, gate)
+
+    def read_highlights(self, frame: CameraFrame) -> Luminance | None:
+        """Mirrored lamps alone, of the view that was drawn last."""
+        found = self._mirrored
+        return None if found is None else Luminance(found.lamps_cd_m2, self.prepared.photometry)
+
     def _arrives(self, lamp: Lamp, facets: Facets) -> Float:
         """What of a lamp arrives at n facets, as `lamp_highlight` has it."""
         place = facets.position, facets.ground
@@ -227,11 +256,20 @@ class ReferenceEngine:
         own, word = self.prepared.glare, self.prepared.photometry
         if own is None:
             return luminance
-        light = np.maximum(np.nan_to_num(np.asarray(luminance.cd_m2, np.float64)), 0)
+        light = all_light = np.maximum(np.nan_to_num(np.asarray(luminance.cd_m2, np.float64)), 0)
+        through = self.prepared.exposure.see_through
+        if through is not None:
+            # Real light glares in the eye by itself.
+            unlit = composite.unlit_linear(frame, self.prepared.ambient)
+            real = frame.luminance_per_unit * ost.real_light(unlit, through)
+            light = np.maximum(all_light - real, 0)
         whole = whole_picture.scattered(light, own.plans[frame.view.name])
-        around = own.around_sources(light, frame.view)
-        self._glare = Luminance(whole.glare + around, word)
-        return Luminance(whole.picture + around, word)
+        found = own.finder(frame.view).find(survey(light), lambda y, x: light[y, x])
+        added = whole.glare + draw_needles(own.needles_of(found, frame.view), frame.view)
+        self._glare = Luminance(added, word)
+        if through is not None:
+            return Luminance(all_light + added, word)
+        return Luminance(whole.picture - whole.glare + added, word)
 
     def read_glare(self, frame: CameraFrame) -> Luminance | None:
         """What glare added to the view that was drawn last."""

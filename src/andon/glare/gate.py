@@ -41,5 +41,6 @@ def gate(
     """
     least = contrast * np.asarray(ambient_cd_m2, np.float64)
     width = np.maximum(least * (RAMP - 1), np.finfo(np.float64).tiny)
-    along = np.clip((np.asarray(luminance_cd_m2, np.float64) - least) / width, 0, 1)
+    with np.errstate(over="ignore"):
+        along = np.clip((np.asarray(luminance_cd_m2, np.float64) - least) / width, 0, 1)
     return along * along * (3 - 2 * along)

@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,10 +51,10 @@ class Outline:
             (first + 1) % count
         ]
 
-    @property
+    @cached_property
     def solid_angle_sr(self) -> float:
         """Of the inside: the mean over φ of 2π(1 − cos θ0)."""
-        phi = (np.arange(720) + 0.5) * (np.pi / 360)
+        phi = (np.arange(720, dtype=np.float64) + 0.5) * (np.pi / 360)
         return float(np.mean(2 * np.pi * (1 - np.cos(self.radius(phi)))))
 
 

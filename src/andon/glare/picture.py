@@ -21,7 +21,7 @@ from andon.glare.cleaning import Cleaned, cleaned
 from andon.glare.kernel import Kernel
 from andon.glare.needles.model import Which
 from andon.glare.numbers.measure import GlareNumbers, measured
-from andon.glare.scatter import EngineName, scatter
+from andon.glare.scatter import EngineName, scatter_all, scatter_sources
 from andon.glare.sources.find import FoundSources, find_sources
 from andon.glare.stars import stars_of
 from andon.observer.spread.model import Eye, SpreadFunction
@@ -47,7 +47,7 @@ class GlareResult:
     found : bright sources, from the strongest to the weakest.
     numbers : veil at the gaze, TI, UGR, DGP.
     share : k, of the picture's light that became veil.
-    stars : sources with needles.
+    stars : how many sources have a halo, and how many have needles.
     view, eye, model, renderer, engine, photometry : as rendered.
     pixels : how many pixels were no light, and where.
     """
@@ -58,7 +58,7 @@ class GlareResult:
     found: FoundSources
     numbers: GlareNumbers
     share: float
-    stars: int
+    stars: tuple[int, int]
     view: View
     eye: Eye
     model: SpreadFunction
@@ -83,7 +83,7 @@ def glare_of_picture(
     *,
     renderer: Renderer = "auto",
     engine: EngineName = "auto",
-    needles: bool = True,
+    with_stars: bool = True,
     seed: int = 0,
     which: Which = "mono",
     gaze: NDArray[np.float64] | None = None,
@@ -102,7 +102,7 @@ def glare_of_picture(
     renderer : ``whole-picture`` scatters all light, ``per-source`` that of the sources found;
         ``auto`` is the whole picture.
     engine : ``auto`` takes the GPU where there is an adapter.
-    needles : stars around sources 40 times brighter than what the eye is adapted to.
+    with_stars : halo and needles around sources 40 times brighter than the ambient luminance.
     seed, which : observer and eye, whose needles they are.
     gaze : (3,) camera frame, where the numbers are taken; None: straight ahead.
     photometry : ``relative`` where the picture is not calibrated.
@@ -128,11 +128,14 @@ def glare_of_picture(
     ahead = AHEAD if gaze is None else _unit(gaze)
     found = find_sources(pixels.light, view, clipped=clipped)
     light = pixels.light
-    spread_out = scatter(light, view, kernel, engine)
-    stars = stars_of(found, eye, view, seed=seed, which=which) if needles else None
+    if renderer == "per-source":
+        spread_out = scatter_sources(light, view, kernel, found)
+    else:
+        spread_out = scatter_all(light, view, kernel, engine)
+    stars = stars_of(found, eye, view, kernel, seed=seed, which=which) if with_stars else None
     picture, glare = spread_out.picture, spread_out.veil
     if stars is not None:
-        picture = picture + stars.added - stars.taken[..., None] * light
+        picture = picture + stars.added - stars.taken * light
         glare = glare + stars.added
     if shows is not None:
         picture, glare = (np.where(shows[..., None], part, 0) for part in (picture, glare))
@@ -143,11 +146,11 @@ def glare_of_picture(
         found,
         measured(light, view, kernel, ahead, photometry),
         spread_out.share,
-        0 if stars is None else stars.count,
+        (0, 0) if stars is None else (stars.halos, stars.needles),
         view,
         eye,
         spread,
-        renderer,
+        "per-source" if renderer == "per-source" else "whole-picture",
         spread_out.engine,
         photometry,
         pixels,

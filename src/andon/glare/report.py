@@ -125,7 +125,8 @@ def _model(result: GlareResult) -> dict[str, Any]:
         "scattered_share": rounded(result.share),
         "renderer": result.renderer,
         "engine": result.engine,
-        "sources_with_needles": result.stars,
+        "sources_with_halo": result.stars[0],
+        "sources_with_needles": result.stars[1],
     }
 
 

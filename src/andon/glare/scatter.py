@@ -1,4 +1,15 @@
-"""The veil of a whole picture by either engine."""
+"""The veil of a picture by either renderer and either engine.
+
+============= ============================== ============================ ========================
+renderer      scatters                       reference                    gpu
+============= ============================== ============================ ========================
+whole-picture all light                      `whole_picture.reference`    `whole_picture.stage`
+per-source    that of the sources found      `per_source.reference`       (as the reference)
+============= ============================== ============================ ========================
+
+The GPU's veil comes in half floats, brought to their range first: 0.05 % of the veil. What stays,
+and the sum, are in float64 always.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +20,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.glare.kernel import Kernel
-from andon.glare.whole_picture.plan import plan_whole
-from andon.glare.whole_picture.reference import scattered
+from andon.glare.per_source.model import PerSource
+from andon.glare.per_source.reference import veil_of_sources
+from andon.glare.sources.find import FoundSources
+from andon.glare.whole_picture.plan import WholePlan, plan_whole
+from andon.glare.whole_picture.reference import resolved
+from andon.glare.whole_picture.reference import veil as veil_of_all
 from andon.spaces import View
 
-__all__ = ["EngineName", "Scatter", "scatter"]
+__all__ = ["EngineName", "Scatter", "scatter_all", "scatter_sources"]
 
 Float = NDArray[np.float64]
 EngineName = Literal["auto", "gpu", "reference"]
+
+# Half floats end at 65504; the brightest pixel is brought to this.
+BRIGHTEST = 60000.0
+# Of a source's veil what is below this share of the ambient luminance is not drawn.
+UNSEEN = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,8 +45,9 @@ class Scatter:
 
     Attributes
     ----------
-    picture, veil : (H, W, 3); picture = (1 − k)·light + veil.
-    share : k, the mean over the light of the picture of what leaves its pixel.
+    picture, veil : (H, W, 3); picture = (1 − k)·light + veil. Veil holds what is scattered by less
+        than a pixel, too, so that k does not depend on the size of pixels.
+    share : k, the mean over the light of the picture.
     engine : ``gpu`` or ``reference``.
     """
 
@@ -36,10 +57,58 @@ class Scatter:
     engine: str
 
 
-def scatter(light: Float, view: View, kernel: Kernel, engine: EngineName, /) -> Scatter:
+def scatter_all(light: Float, view: View, kernel: Kernel, engine: EngineName, /) -> Scatter:
     """Scatters all light (H, W, 3), finite and ≥ 0, of a picture of `view`."""
-    found = scattered(light, plan_whole(view, kernel))
+    plan = plan_whole(view, kernel)
+    on_gpu = engine == "gpu" or (engine == "auto" and _has_gpu())
+    if on_gpu:
+        spread, left = _veil_on_gpu(light, plan)
+    else:
+        spread, left = veil_of_all(light, plan), resolved(plan)
+    return _summed(light, spread, left, view, kernel, "gpu" if on_gpu else "reference")
+
+
+def scatter_sources(light: Float, view: View, kernel: Kernel, found: FoundSources, /) -> Scatter:
+    """Scatters the light of the sources `found` in (H, W, 3); all other light stays."""
+    settings = PerSource(least_cd_m2=UNSEEN * found.ambient_cd_m2)
+    spread = veil_of_sources(found.simplified(), view, kernel, settings=settings)
+    left = kernel.share * (found.labels > 0)
+    return _summed(light, spread, left, view, kernel, "reference")
+
+
+def _summed(
+    light: Float, spread: Float, left: Float, view: View, kernel: Kernel, engine: str
+) -> Scatter:
+    """`spread` (H, W, 3) came to other pixels, `left` (H, W) is the share that left each."""
+    share = np.where(left > 0, np.maximum(left, kernel.share), 0)
+    veil = spread + (share - left)[..., None] * light
     weight = light.sum(axis=-1) * view.solid_angles()
     total = float(weight.sum())
-    share = float((found.share * weight).sum() / total) if total > 0 else kernel.share
-    return Scatter(found.picture, found.glare, share, "reference")
+    mean = float((share * weight).sum() / total) if total > 0 else kernel.share
+    return Scatter((1 - share[..., None]) * light + veil, veil, mean, engine)
+
+
+def _has_gpu() -> bool:
+    from andon.gpu.device import adapter_summary
+
+    return adapter_summary() is not None
+
+
+def _veil_on_gpu(light: Float, plan: WholePlan) -> tuple[Float, Float]:
+    """(H, W, 3) what comes to the pixels, (H, W) the share that leaves each."""
+    from andon.glare.whole_picture.stage import WholePictureStage
+    from andon.gpu.device import open_gpu
+    from andon.gpu.textures import make_texture
+
+    gpu = open_gpu()
+    height, width = plan.view.shape
+    scale = BRIGHTEST / max(float(light.max()), 1e-30)
+    source = make_texture(gpu, "rgba32float", width, height, label="light")
+    target = make_texture(gpu, "rgba16float", width, height, label="veil")
+    source.write(np.dstack([light * scale, np.ones((height, width))]))
+    stage = WholePictureStage(gpu, source, target, plan)
+    encoder = gpu.device.create_command_encoder()
+    stage.encode_glare(encoder, target)
+    gpu.device.queue.submit([encoder.finish()])
+    drawn = target.read().astype(np.float64)
+    return drawn[..., :3] / scale, 1 - drawn[..., 3]

@@ -53,7 +53,9 @@ def rows() -> tuple[Row, ...]:
         caustic,
         gaze,
         glare_flicker,
+        glare_whole,
         glare_models,
+        glare_needles,
         glass,
         glass_blur,
         glass_frame,
@@ -86,5 +88,7 @@ def rows() -> tuple[Row, ...]:
         *glass_frame.ROWS,
         *caustic.ROWS,
         *glare_flicker.ROWS,
+        *glare_whole.ROWS,
         *glare_models.ROWS,
+        *glare_needles.ROWS,
     )

@@ -1,6 +1,7 @@
 // Pixels of a finish as their lobes see them: the same functions as facets.py, in float32.
 
 //!import andon/gbuffer/gbuffer.wgsl
+//!import andon/glare/highlights/frames.wgsl
 //!import andon/glare/highlights/waves.wgsl
 //!struct FinishRecord
 
@@ -30,19 +31,6 @@ struct Facet {
   exponent: f32,
   ratio: f32,
 };
-
-// Right-handed with `axis`: Duff et al. 2017.
-fn first_of_frame(axis: vec3f) -> vec3f {
-  let side = select(-1.0, 1.0, axis.z >= 0.0);
-  let s = -1.0 / (side + axis.z);
-  return vec3f(1.0 + side * axis.x * axis.x * s, side * axis.x * axis.y * s, -side * axis.x);
-}
-
-fn second_of_frame(axis: vec3f) -> vec3f {
-  let side = select(-1.0, 1.0, axis.z >= 0.0);
-  let s = -1.0 / (side + axis.z);
-  return vec3f(axis.x * axis.y * s, side + axis.y * axis.y * s, -axis.y);
-}
 
 fn brushed(normal: vec3f, finish: FinishRecord) -> vec3f {
   let wanted = select(finish.axis, cross(finish.axis, normal), finish.around > 0.5);

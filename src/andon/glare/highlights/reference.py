@@ -146,13 +146,15 @@ def _of_an_area(facets: Facets, ball: LampBall, edges: Iterable[Edge]) -> Float:
     """Luminance (n, 3) of a lamp within `ball`, seen in full."""
     near = nearest_to_mirror(facets, ball)
     total = np.zeros_like(facets.position)
+    # Lifted to the horizon, an outline straight below would go all the way round it.
+    risen = dot(facets.normal, ball.middle - facets.position) > -ball.radius_m
     if facets.finish.kind == "phong":
         a, b = facets.mirror_frame
         for edge in edges:
             ends = [above_horizon(facets, end) for end in (edge.start, edge.end)]
             p, q = (np.stack([dot(e, a), dot(e, b), dot(e, facets.mirror)], -1) for e in ends)
             total += edge.luminance_cd_m2 * phong_edge_share(p, q, facets.finish.exponent)[:, None]
-        return np.abs(total) * facets.straight
+        return risen[:, None] * np.abs(total) * facets.straight
     middle, far = _middle(facets, ball)
     mean = Mean(facets)
     for edge in edges:
@@ -161,7 +163,7 @@ def _of_an_area(facets: Facets, ball: LampBall, edges: Iterable[Edge]) -> Float:
         share = np.where(far, fan_share(p, q, middle), edge_share(p, q))
         total += edge.luminance_cd_m2 * share[:, None]
         mean.add(start, p)
-    return np.abs(total) * mean.with_inner(near)
+    return risen[:, None] * np.abs(total) * mean.with_inner(near)
 
 
 class Mean:

@@ -4,6 +4,9 @@
 //!struct NeedleRecord
 //!struct NeedleConstants
 
+// What a half float holds.
+const LARGEST: f32 = 65504.0;
+
 @group(0) @binding(0) var<uniform> view: ViewRecord;
 @group(0) @binding(1) var<uniform> constants: NeedleConstants;
 @group(0) @binding(2) var<storage> needles: array<NeedleRecord>;
@@ -74,5 +77,6 @@ fn tent_within(across: f32) -> f32 {
   let half_width = max(needle.light.w * tapered, constants.least * width);
   let tent = tent_within((s + 0.5 * width) / half_width) - tent_within((s - 0.5 * width) / half_width);
   let mine = select(0.0, 1.0, theta >= needle.own.x && theta < needle.own.y);
-  return vec4f(needle.light.xyz * held * (mine * tent / (extent * width)), 0.0);
+  let light = needle.light.xyz * held * (mine * tent / (extent * width));
+  return vec4f(min(light, vec3f(LARGEST)), 0.0);
 }

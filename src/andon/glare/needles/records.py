@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from andon.glare.needles.model import REFERENCE_NM, WAVELENGTHS_NM, NeedleModel, Needles
 from andon.glare.needles.reference import EXTENT, LEAST_HALF_WIDTH
+from andon.glare.pixels import pixel_radians
 from andon.gpu.layout import HostStruct
 from andon.spaces import View
 
@@ -20,7 +21,7 @@ __all__ = [
     "STRUCTS",
     "pack_constants",
     "pack_needles",
-    "pixel_radians",
+    "strip_pixels",
 ]
 
 NEEDLE_RECORD = HostStruct(
@@ -59,13 +60,6 @@ PART_PIXELS, MOST_PARTS = 8.0, 32
 STRUCTS = {struct.name: struct for struct in (NEEDLE_RECORD, NEEDLE_CONSTANTS)}
 
 
-def pixel_radians(view: View, /) -> float:
-    """Angle that no pixel of `view` is wider than."""
-    if view.projection == "latlong":
-        return float(max(2 * np.pi / view.width, np.pi / view.height))
-    return float(1 / min(view.fx, view.fy))
-
-
 def pack_constants(model: NeedleModel, view: View, /) -> NDArray[Any]:
     """One `NEEDLE_CONSTANTS`."""
     end = (1 + 1 / model.knee) ** -model.power
@@ -95,6 +89,17 @@ def pack_needles(
         records["light"][begin:end] /= luminance_per_unit
         begin = end
     return records
+
+
+def strip_pixels(needles: Sequence[Needles], view: View, /) -> float:
+    """How many pixels the quads of all needles cover near the axis of a pinhole view."""
+    pixel = pixel_radians(view)
+    half = [np.maximum(star.half_width_radians, LEAST_HALF_WIDTH * pixel) for star in needles]
+    areas = [
+        (_whole(star, pixel) * (2 * side + pixel)).sum()
+        for star, side in zip(needles, half, strict=True)
+    ]
+    return float(np.sum(areas)) / pixel**2
 
 
 def _whole(star: Needles, pixel: float) -> NDArray[np.float64]:

@@ -14,7 +14,6 @@ So all pixels together hold a needle's light, however thin it is and wherever it
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -59,7 +58,7 @@ def tent_within(across: ArrayLike, /) -> Float:
 def draw(needles: Sequence[Needles], view: View, /) -> Float:
     """(H, W, 3) cd/m² of needles alone, pixel by pixel the mean over it."""
     directions = view.directions()
-    steps = _steps(view, directions)
+    steps = _steps(view)
     margin = MARGIN * float(np.max(np.linalg.norm(steps, axis=(-2, -1))))
     picture = np.zeros((*view.shape, 3))
     for star in needles:
@@ -102,16 +101,9 @@ def _needle(star: Needles, index: int, directions: Float, steps: Float) -> Float
     return star.illuminance_lux[index] * held * tent[:, None]
 
 
-def _steps(view: View, directions: Float) -> Float:
+def _steps(view: View) -> Float:
     """(H, W, 2, 3) how the direction changes from one side of a pixel to the other."""
-    if view.projection == "latlong":
-        x, y, z = np.moveaxis(directions, -1, 0)
-        level = np.hypot(x, z)
-        column = np.stack([z, np.zeros_like(x), -x], axis=-1) * (2 * np.pi / view.width)
-        row = np.stack([-y * x / level, level, -y * z / level], axis=-1) * (np.pi / view.height)
-        return np.stack([column, row], axis=-2)
-    shifted = [
-        replace(view, cx=view.cx + dx, cy=view.cy + dy).directions()
-        for dx, dy in ((-0.5, 0), (0.5, 0), (0, -0.5), (0, 0.5))
-    ]
-    return np.stack([shifted[0] - shifted[1], shifted[2] - shifted[3]], axis=-2)
+    grid = view.pixel_grid()
+    sides = [view.directions_at(grid + 0.5 * np.array(way)) for way in ((1, 0), (0, 1))]
+    others = [view.directions_at(grid - 0.5 * np.array(way)) for way in ((1, 0), (0, 1))]
+    return np.stack(sides, axis=-2) - np.stack(others, axis=-2)

@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.glare.kernel import Kernel
 from andon.glare.model import Source
-from andon.glare.needles.records import pixel_radians
 from andon.glare.per_source.coordinates import chord
 from andon.glare.per_source.halos import HaloTable, halo_table
 from andon.glare.per_source.model import PerSource
 from andon.glare.per_source.rings import halo_samples, offsets, reach_chord, rings_of
 from andon.glare.per_source.tables import VeilTable, table_of
+from andon.glare.pixels import pixel_radians
 from andon.observer.spread.model import SpreadFunction
 from andon.spaces import View
 
-__all__ = ["has_core", "veil_of_sources"]
+__all__ = ["halos_of_sources", "has_core", "veil_of_sources"]
 
 Float = NDArray[np.float64]
 
@@ -55,8 +55,28 @@ def veil_of_sources(
     total = np.zeros((*view.shape, 3))
     for source, share in zip(sources, shares, strict=True):
         table = table_of(kernel, source.outline, core=core, bloom=settings.bloom)
-        total += _veil(source, view, kernel, table, settings.least_cd_m2)
+        if settings.bloom_drawn:
+            total += _veil(source, view, kernel, table, settings.least_cd_m2)
         if ring is not None and share > 0:
+            total += share * _ring(source, view, table, ring)
+    return total
+
+
+def halos_of_sources(
+    sources: Sequence[Source],
+    view: View,
+    kernel: Kernel,
+    halo: SpreadFunction,
+    /,
+    *,
+    weights: Sequence[float] | None = None,
+) -> Float:
+    """(H, W, 3) cd/m² of the rings alone, as `veil_of_sources` draws them on top of the veil."""
+    ring = halo_table(halo)
+    total = np.zeros((*view.shape, 3))
+    for source, share in zip(sources, checked_weights(sources, weights), strict=True):
+        if share > 0:
+            table = table_of(kernel, source.outline, core=has_core(view, kernel), bloom=None)
             total += share * _ring(source, view, table, ring)
     return total
 

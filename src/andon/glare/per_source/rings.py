@@ -24,9 +24,9 @@ from numpy.typing import NDArray
 
 from andon.glare.kernel import Kernel
 from andon.glare.model import Outline
-from andon.glare.needles.records import pixel_radians
 from andon.glare.per_source.coordinates import chord
 from andon.glare.per_source.tables import COLUMNS, VeilTable
+from andon.glare.pixels import pixel_radians
 from andon.spaces import View
 
 __all__ = ["Rings", "halo_samples", "offsets", "reach_chord", "rings_of"]

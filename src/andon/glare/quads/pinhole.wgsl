@@ -1,13 +1,15 @@
 // The rectangle of a pinhole picture that holds a cap. The shader that imports this declares `view`.
 
-// Left, top, right, bottom in pixels of what lies within `radius` < π/2 of `direction` (unit, camera
+//!import andon/gpu/pi.wgsl
+
+// Left, top, right, bottom in pixels of what lies within `radius` of `direction` (unit, camera
 // frame): the outline of a ball of radius sin r at distance 1. A cap that reaches through the plane
 // of the eye is the whole picture, one behind it nothing.
 fn cap_box(direction: vec3f, radius: f32) -> vec4f {
-  let sine = sin(radius);
+  let sine = sin(min(radius, 0.5 * PI));
   let z = direction.z;
   if (z <= sine) {
-    return vec4f(0.0, 0.0, select(vec2f(0.0), view.size, z > -sine));
+    return vec4f(0.0, 0.0, select(vec2f(0.0), view.size, z > -sine || radius > 0.5 * PI));
   }
   let planar = direction.xy;
   let reach = sine * sqrt(planar * planar + z * z - sine * sine);

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.glare.gate import HIGHLIGHT_CONTRAST
-from andon.glare.model import Source
+from andon.glare.model import Outline, Source
 from andon.glare.sources.moments import Moments, pixel_moments, sources_of
 from andon.glare.sources.regions import connected_regions
 from andon.quantities import photometric
@@ -32,6 +32,8 @@ __all__ = ["FoundSources", "background_luminance", "find_sources"]
 
 Float = NDArray[np.float64]
 
+# Axes of an outline that is not taken for a circle, and of how many sources outlines are kept.
+ELONGATED, SHAPED = 1.5, 4
 # The mean without sources falls from round to round and the sources grow; real pictures take 3…12.
 ROUNDS = 40
 
@@ -59,6 +61,16 @@ class FoundSources:
     regions: int
     left_out: int
     left_out_share: float
+
+    def simplified(self, shaped: int = SHAPED, /) -> tuple[Source, ...]:
+        """The sources, round but for the elongated among the `shaped` strongest ones.
+
+        A table of the veil around an outline takes a tenth of a second, that of a circle none.
+        """
+        return tuple(
+            source if place < shaped and _elongated(source.outline) else _round(source)
+            for place, source in enumerate(self.sources)
+        )
 
     @property
     def luminance_cd_m2(self) -> Float:
@@ -176,6 +188,16 @@ def _groups(moments: Moments, within: float, most: int) -> tuple[NDArray[np.int6
     place[np.argsort(-power, kind="stable")] = np.arange(kept)
     place[-1] = -1
     return place[group], kept
+
+
+def _elongated(outline: Outline) -> bool:
+    return bool(outline.radii_radians.max() > ELONGATED * outline.radii_radians.min())
+
+
+def _round(source: Source) -> Source:
+    """The same with a circle of the same solid angle as outline."""
+    radius = 2 * np.arcsin(np.sqrt(source.outline.solid_angle_sr / (4 * np.pi)))
+    return replace(source, outline=Outline(np.array([radius])))
 
 
 def _named(

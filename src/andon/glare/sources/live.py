@@ -1,55 +1,93 @@
-"""Sources in a frame, found anew in each: only bright pixels are looked at."""
+"""Sources in a frame, found anew in each: only bright pixels are looked at.
+
+::
+
+    picture ─survey▶ tiles ─background_luminance▶ ambient ─▶ 40 × ambient
+               │                                                  │
+               └─ tiles with a brighter pixel ─▶ pixels × gate ─▶ regions ─moments▶ [Source]
+
+A pixel counts with the weight of the gate, 0 at 40 and 1 from 50 times the ambient level on, so
+what a source sends does not jump when a pixel becomes part of it. Regions that do not touch are
+not merged: a source does not jump to its neighbour when they come near.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.glare.gate import gate
 from andon.glare.model import Source
+from andon.glare.sources.find import background_luminance
 from andon.glare.sources.moments import pixel_moments, sources_of
 from andon.glare.sources.regions import connected_regions
+from andon.glare.sources.survey import SIDE_PX, Survey, tile_solid_angles
 from andon.quantities import photometric
 from andon.spaces import View
 
-__all__ = ["sources_of_bright"]
+__all__ = ["LightOf", "LiveSources", "SourceFinder"]
 
 Float = NDArray[np.float64]
+# Rows (n,), columns (n,) → luminance (n, 3) in cd/m², ≥ 0.
+LightOf = Callable[[NDArray[np.intp], NDArray[np.intp]], Float]
 
 
-def sources_of_bright(
-    bright: NDArray[np.bool_],
-    light_of: Callable[[NDArray[np.intp], NDArray[np.intp]], Float],
-    solid_angles_sr: Float,
-    view: View,
-    /,
-    *,
-    most: int,
-) -> list[Source]:
-    """The `most` strongest regions of touching bright pixels, strongest first.
+@dataclass(frozen=True, eq=False)
+class LiveSources:
+    """What is bright in a frame.
 
-    Regions are not merged, so that a source does not jump to its neighbour when they come near.
+    Attributes
+    ----------
+    ambient_cd_m2 : mean luminance without what is 40 times brighter.
+    sources : strongest first.
+    """
+
+    ambient_cd_m2: float
+    sources: tuple[Source, ...] = ()
+
+
+class SourceFinder:
+    """Finds the sources of frames of one view.
 
     Parameters
     ----------
-    bright : (H, W) bool.
-    light_of : rows (n,), columns (n,) → luminance (n, 3) cd/m² ≥ 0 of these pixels.
-    solid_angles_sr : (H, W) of the view's pixels.
+    contrast : luminance over the ambient level from which a pixel belongs to a source.
+    most : sources that are kept.
     """
-    if not bright.any():
-        return []
-    regions, count = connected_regions(bright, view)
-    rows, columns = np.nonzero(regions)
-    light, solid = light_of(rows, columns), solid_angles_sr[rows, columns]
-    region = regions[rows, columns] - 1
-    power = np.bincount(region, photometric(light) * solid, count)
-    strongest = np.argsort(-power, kind="stable")[:most]
-    place = np.full(count, -1)
-    place[strongest] = np.arange(len(strongest))
-    kept = place[region] >= 0
-    directions = view.directions_at(np.stack([columns[kept], rows[kept]], axis=-1))
-    found = place[region[kept]]
-    return sources_of(
-        pixel_moments(directions, light[kept], solid[kept], found, len(strongest)), name="frame"
-    )
+
+    def __init__(self, view: View, *, contrast: float, most: int) -> None:
+        self.view, self.contrast, self.most = view, contrast, most
+        self._tiles, self._solid = tile_solid_angles(view), view.solid_angles()
+
+    def find(self, survey: Survey, light_of: LightOf, /) -> LiveSources:
+        """The sources of a frame; `survey` in cd/m², `light_of` is asked where it is bright."""
+        ambient = background_luminance(survey.mean, self._tiles, contrast=self.contrast)
+        bright = survey.peak > self.contrast * ambient
+        if not bright.any():
+            return LiveSources(ambient)
+        inside = np.repeat(np.repeat(bright, SIDE_PX, 0), SIDE_PX, 1)
+        rows, columns = np.nonzero(inside[: self.view.height, : self.view.width])
+        light = light_of(rows, columns)
+        weight = gate(photometric(light), ambient, contrast=self.contrast)
+        kept = weight > 0
+        rows, columns = rows[kept], columns[kept]
+        light = light[kept] * weight[kept, None]
+        return LiveSources(ambient, tuple(self._sources(rows, columns, light)))
+
+    def _sources(
+        self, rows: NDArray[np.intp], columns: NDArray[np.intp], light: Float
+    ) -> list[Source]:
+        mask = np.zeros(self.view.shape, bool)
+        mask[rows, columns] = True
+        regions, count = connected_regions(mask, self.view)
+        region, solid = regions[rows, columns] - 1, self._solid[rows, columns]
+        power = np.bincount(region, photometric(light) * solid, count)
+        strongest = np.argsort(-power, kind="stable")[: self.most]
+        place = np.full(count, -1)
+        place[strongest] = np.arange(len(strongest))
+        directions = self.view.directions_at(np.stack([columns, rows], axis=-1))
+        moments = pixel_moments(directions, light, solid, place[region], len(strongest))
+        return sources_of(moments, name="frame")

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from andon.spaces import View
 
-__all__ = ["MARGIN", "Chart", "block_directions", "block_shape", "charts_of"]
+__all__ = ["MARGIN", "Chart", "block_directions", "block_shape", "charts_of", "pixel_angles"]
 
 Float = NDArray[np.float64]
 
@@ -33,6 +33,8 @@ SINGLE_REACH_DEGREES = 130.0
 PAIR_REACH_DEGREES = 125.0
 # … and is read this far beyond the horizon, where one passes into the other.
 BLEND_DEGREES = 6.0
+# No scale is smaller: that of directions within 0.1° of straight behind.
+LEAST_SCALE = 1e-6
 # Pixels per cell of level 1, and by how much a wide field may be finer or coarser on the axis.
 CELL_PIXELS = 2.0
 FINEST, COARSEST = 0.6, 1.3
@@ -70,7 +72,8 @@ class Chart:
 
     def scale(self, directions: Float, /) -> Float:
         """(...) a in (0, 1]: angle per unit of the chart."""
-        return (1 + directions @ self.chart_from_camera[2]) / 2
+        # Straight behind it is 0, and so is a level there; where its logarithm is taken, all but.
+        return np.maximum((1 + directions @ self.chart_from_camera[2]) / 2, LEAST_SCALE)
 
     def level_size(self, level: int, /) -> tuple[int, int]:
         """(rows, columns) of level ≥ 1 without margins."""
@@ -92,11 +95,14 @@ class Chart:
         y, x = np.mgrid[:rows, :columns] + 0.5 - MARGIN
         return self.direction_from_place(np.stack([x, y], -1) * 2.0 ** (level - 1))
 
-    def share(self, directions: Float, /, *, pair: bool) -> Float:
-        """(...) in [0, 1] how much of what is seen there this chart gives; all charts sum to 1."""
+    def share(self, directions: Float, degrees: float = BLEND_DEGREES, /, *, pair: bool) -> Float:
+        """(...) in [0, 1] how much of what is there is this chart's; all charts sum to 1.
+
+        One of a pair passes into the other between `degrees` above and below the horizon.
+        """
         if not pair:
             return np.ones(directions.shape[:-1])
-        height = directions @ self.chart_from_camera[2] / math.sin(math.radians(BLEND_DEGREES))
+        height = directions @ self.chart_from_camera[2] / math.sin(math.radians(degrees))
         along = np.clip((height + 1) / 2, 0, 1)
         return along**2 * (3 - 2 * along)
 
@@ -133,6 +139,23 @@ def charts_of(view: View, /) -> tuple[Chart, ...]:
         Chart(rotation, cell, np.full(2, -half * cell), (2 * half, 2 * half))
         for rotation in (axes, down)
     )
+
+
+def pixel_angles(view: View, scales: Float, /) -> Float:
+    """(n,) angle of a pixel, √(solid angle), where the scale of a chart of the view is a (n,).
+
+    About the axis of projection; off it by as much as the principal point is off the middle. 0
+    where no pixel is.
+    """
+    cosine = np.clip(2 * scales - 1, -1, 1)
+    if view.projection == "latlong":
+        # cos of the elevation, whose sine is the cosine to the vertical.
+        form = np.sqrt(1 - cosine**2)
+    elif view.projection == "fisheye":
+        form = np.sinc(np.arccos(cosine) / np.pi)
+    else:
+        form = np.maximum(cosine, 0) ** 3
+    return _axis_pixel(view) * np.sqrt(form)
 
 
 def _axis_pixel(view: View) -> float:

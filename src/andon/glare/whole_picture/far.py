@@ -1,8 +1,8 @@
 """Far light: between all pairs of coarse cells, by the true angle between their directions.
 
-Near a cell its kernel is what χ leaves of the mixture, ``K₀ + ∫ W·(1 − χ)·G dlnσ``; from a few
-cells on it is the model less what the levels make of that very pair of cells. So far away the sum
-of both is the model, with its fade beyond 90°, and with light beyond the border of a chart.
+Its kernel is what χ leaves of the mixture, ``K₀ + ∫ W·(1 − χ)·G dlnσ``, beyond some 30° what the
+model differs from the mixture, and beyond a few cells what the levels lack: their ripple, and the
+light that lies beyond the border of their chart. So far away the sum is the model with its fade.
 """
 
 from __future__ import annotations
@@ -25,8 +25,17 @@ Index = NDArray[np.int64]
 
 # All charts have at most this many coarse cells: pairs are their square.
 MOST_CELLS = 800
-# From how many coarse cells (of the axis) on the model itself is summed, and fully from where.
-EXACT_CELLS = (2.0, 4.0)
+# From how many coarse cells on the levels' own errors are made good, and fully where.
+RESOLVED_CELLS = (2.0, 4.0)
+# Where the model takes over from the mixture, which is fitted to 40°.
+MODEL_DEGREES = (20.0, 40.0)
+# Two charts pass light on to each other over a band that is wide against coarse cells: sums over
+# cells then have all of it (0.3 % at ±20°).
+LIGHT_BLEND_DEGREES = 20.0
+# The scale of light that lies opposite to a chart's axis, where it has none.
+LEAST_SCALE = 0.15
+# Nodes of the table of the kernel, evenly over the chord 0…2 and over ln scale.
+CHORDS, SCALES = 513, 17
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,23 +47,26 @@ class Far:
     level : F, whose cells it is between.
     light_cells, receiving_cells : (n, 3), (m, 3) chart, row and column in the arrays of level F.
     matrix : (m, n) veil of a receiving cell per D of a light cell.
-    share : of a point's light that it spreads over the whole sphere.
+    scales, shares : (n,) of a point's light it spreads `shares` over the whole sphere, where the
+        chart's scale is one of `scales`.
     """
 
     level: int
     light_cells: Index
     receiving_cells: Index
     matrix: Float
-    share: float
+    scales: Float
+    shares: Float
 
 
 @dataclass(frozen=True, eq=False)
 class _Cells:
-    """Cells that are read or lit: (n, 3) indices, (n, 3) directions, (n,) share of their light."""
+    """Cells that are read or lit: (n, 3) indices and directions, (n,) shares of light, if read."""
 
     indices: Index
     directions: Float
     share: Float
+    read: NDArray[np.bool_]
 
 
 def far_level(charts: tuple[Chart, ...], /) -> int:
@@ -63,7 +75,7 @@ def far_level(charts: tuple[Chart, ...], /) -> int:
     # Where there is more than a lattice of a hundred thousand cells it need not be counted.
     while charts[0].level_size(level)[0] * charts[0].level_size(level)[1] > 128 * MOST_CELLS:
         level += 1
-    while len(_cells(charts, level).share) > MOST_CELLS:
+    while _cells(charts, level).read.sum() > MOST_CELLS:
         level += 1
     return level
 
@@ -73,24 +85,29 @@ def plan_far(
 ) -> Far:
     """The far part between the cells of `level`."""
     cells = _cells(charts, level)
-    lit = cells.share > 0
+    lit, read = cells.share > 0, cells.read
     sources = cells.directions[lit]
+    own = np.choose(cells.indices[:, 0], [c.scale(cells.directions) for c in charts])
     width = charts[0].cell * 2 ** (level - 1)
-    blend = _Blend(kernel, mixture, ladder, width)
+    table = _Table(kernel, mixture, ladder, width)
     parts: list[Float] = []
     for index, chart in enumerate(charts):
-        to = cells.directions[cells.indices[:, 0] == index]
-        scale = np.sqrt(chart.scale(to)[:, None] * chart.scale(sources))
+        to = cells.directions[read & (cells.indices[:, 0] == index)]
         place = chart.array_place(chart.place_from_direction(sources), 1)
         limit = np.array(chart.array_shape(1)[::-1]) - 1
         covered = ((place >= 0) & (place <= limit)).all(-1)
-        parts.append(blend.matrix(to, sources, scale, covered))
+        chord = np.linalg.norm(to[:, None] - sources, axis=-1)
+        levels = np.sqrt(chart.scale(to)[:, None] * np.maximum(chart.scale(sources), LEAST_SCALE))
+        ends = (chart.scale(to)[:, None] ** 2 + own[lit] ** 2) / 2
+        parts.append(table.matrix(chord, levels, ends, covered))
+    scales = np.geomspace(own.min(), 1, SCALES)
     return Far(
         level,
         cells.indices[lit],
-        cells.indices,
+        cells.indices[read],
         np.concatenate(parts) * cells.share[lit] * width**2,
-        blend.share(),
+        scales,
+        table.shares(scales),
     )
 
 
@@ -98,56 +115,94 @@ def _cells(charts: tuple[Chart, ...], level: int) -> _Cells:
     found: list[_Cells] = []
     for index, chart in enumerate(charts):
         directions = chart.cell_directions(level)
-        owned = chart.share(directions, pair=len(charts) == 2)
+        owned = chart.share(directions, LIGHT_BLEND_DEGREES, pair=len(charts) == 2)
+        shown = chart.share(directions, pair=len(charts) == 2)
         # A spline reads one cell to each side of what lies within the chart's share.
-        wide = np.pad(owned > 0, 1)
+        wide = np.pad(shown > 0, 1)
         rows, columns = owned.shape
         shifts = [wide[y : y + rows, x : x + columns] for y in range(3) for x in range(3)]
-        y, x = np.nonzero(np.any(shifts, 0))
+        read = np.any(shifts, 0)
+        y, x = np.nonzero(read | (owned > 0))
         indices = np.stack([np.full(len(y), index), y, x], -1)
-        found.append(_Cells(indices, directions[y, x], owned[y, x]))
-    fields = zip(*((c.indices, c.directions, c.share) for c in found), strict=True)
-    indices, directions, share = (np.concatenate(field) for field in fields)
-    return _Cells(indices, directions, share)
+        found.append(_Cells(indices, directions[y, x], owned[y, x], read[y, x]))
+    fields = zip(*((c.indices, c.directions, c.share, c.read) for c in found), strict=True)
+    indices, directions, share, read = (np.concatenate(field) for field in fields)
+    return _Cells(indices, directions, share, read)
 
 
 @dataclass(frozen=True)
-class _Blend:
-    """The far kernel: the mixture's rest near by, the model less the levels farther away."""
+class _Table:
+    """The far kernel over the chord and the scales a and b of both ends, in sr⁻¹.
+
+    Levels see both in one chart; cells are as wide as they are in their own.
+
+    Both splines spread what the matrix makes, by v = `SPLINES_VARIANCE`·(a² + b²)/2 cells²; so
+    every bump is narrower by v, and what is not made of bumps less by v/2 of its Laplacian.
+    """
 
     kernel: Kernel
     mixture: Mixture
     ladder: Ladder
     width: float
 
-    def matrix(self, to: Float, sources: Float, scale: Float, covered: NDArray[np.bool_]) -> Float:
-        """(m, n) in sr⁻¹; `scale` (m, n) is √(ab), `covered` (n,) whether the levels have it."""
-        chord = np.linalg.norm(to[:, None] - sources, axis=-1)
-        theta = 2 * np.arcsin(np.minimum(chord / 2, 1))
-        part = self._part(theta)
-        # The splines at both ends add their own variance; what is narrower is left to them alone.
-        spline = SPLINES_VARIANCE * (self.width * scale) ** 2
-        near = np.full_like(chord, self.mixture.floor)
-        step = self.mixture.log_sigma[1] - self.mixture.log_sigma[0]
-        shares = step * self.mixture.share * self.ladder.left
-        for log_sigma, share in zip(self.mixture.log_sigma, shares, strict=True):
-            if share > 0:
-                sigma = np.sqrt(np.maximum(np.exp(2 * log_sigma) - spline, spline))
-                near += share * bump(chord, sigma)
-        levels = np.where(covered, self.ladder.per_sr(chord, scale), 0.0)
-        return (1 - part) * near + part * (self.kernel.per_sr(theta, core=True) - levels)
+    def matrix(self, chord: Float, scale: Float, ends: Float, covered: NDArray[np.bool_]) -> Float:
+        """(m, n) of chords (m, n), √(ab) and (a² + b²)/2; `covered` (n,) is what levels have."""
+        chords = np.linspace(0, 2, CHORDS)
+        scales = np.geomspace(scale.min() * (1 - 1e-9), scale.max() * (1 + 1e-9), SCALES)
+        x = chord / 2 * (CHORDS - 1)
+        y = np.log(scale / scales[0]) / np.log(scales[-1] / scales[0]) * (SCALES - 1)
+        # All but linear in v.
+        even, levels = self._tables(chords, scales, 1.0)
+        uneven, _ = self._tables(chords, scales, 1.25)
+        ratio = ends / scale**2
+        value = _bilinear(even, y, x) + (ratio - 1) / 0.25 * _bilinear(uneven - even, y, x)
+        return value + np.where(covered, 0.0, _bilinear(levels, y, x))
 
-    def share(self) -> float:
-        """Energy of the far kernel on the sphere."""
-        count = 4000
+    def shares(self, scales: Float) -> Float:
+        """(n,) energy of the far kernel on the sphere, of light where the scale is a (n,)."""
+        count = 2000
         theta = (np.arange(count) + 0.5) * (np.pi / count)
-        part = self._part(theta)
-        rest = self.mixture.floor + self.mixture.per_sr(theta, self.ladder.left)
-        near = self.mixture.per_sr(theta, 1 - self.ladder.left)
-        value = (1 - part) * rest + part * (self.kernel.per_sr(theta, core=True) - near)
-        return float(np.sum(value * np.sin(theta)) * (np.pi / count) * 2 * np.pi)
+        rest = self.mixture.per_sr(theta, 1 - self.ladder.near(scales))
+        value = rest.T + self.mixture.floor + self._miss(theta)
+        return value @ np.sin(theta) * (np.pi / count) * 2 * np.pi
 
-    def _part(self, theta: Float) -> Float:
-        first, last = (cells * self.width for cells in EXACT_CELLS)
-        along = np.clip((theta - first) / (last - first), 0, 1)
-        return along**2 * (3 - 2 * along)
+    def _tables(self, chords: Float, scales: Float, ratio: float) -> tuple[Float, Float]:
+        """(scales, chords) the far kernel where levels have the source, and what levels make."""
+        theta = 2 * np.arcsin(chords / 2)
+        spline = ratio * SPLINES_VARIANCE * (self.width * scales[:, None]) ** 2
+        sigma = np.exp(self.mixture.log_sigma)
+        step = self.mixture.log_sigma[1] - self.mixture.log_sigma[0]
+        narrowed = np.sqrt(np.maximum(sigma**2 - spline, sigma**2 / 2))[:, None]
+        bumps = step * self.mixture.share * bump(chords[:, None], narrowed)
+        near = np.sum(bumps * self.ladder.near(scales)[:, None], -1)
+        levels = self.ladder.per_sr(chords, scales[:, None], spline)
+        grid = np.linspace(0, np.pi, 721)
+        miss = self._miss(grid)
+        slope = np.gradient(miss, grid)
+        laplacian = np.gradient(slope, grid) + slope / np.tan(np.clip(grid, 1e-3, np.pi - 1e-3))
+        model = np.interp(theta, grid, miss) - spline / 2 * np.interp(theta, grid, laplacian)
+        first, last = (cells * self.width * scales[:, None] for cells in RESOLVED_CELLS)
+        part = _smooth((theta - first) / (last - first))
+        rest = bumps.sum(-1) - near + part * (near - levels)
+        return self.mixture.floor + rest + model, part * levels
+
+    def _miss(self, theta: Float) -> Float:
+        """What the model has more than the mixture, where that ends."""
+        first, last = np.radians(MODEL_DEGREES)
+        part = _smooth((theta - first) / (last - first))
+        mixture = self.mixture.floor + self.mixture.per_sr(theta)
+        return part * (self.kernel.per_sr(theta, core=True) - mixture)
+
+
+def _smooth(along: Float) -> Float:
+    along = np.clip(along, 0, 1)
+    return along**2 * (3 - 2 * along)
+
+
+def _bilinear(table: Float, y: Float, x: Float) -> Float:
+    row = np.clip(y.astype(np.int64), 0, table.shape[0] - 2)
+    column = np.clip(x.astype(np.int64), 0, table.shape[1] - 2)
+    down, right = y - row, x - column
+    upper = (1 - right) * table[row, column] + right * table[row, column + 1]
+    lower = (1 - right) * table[row + 1, column] + right * table[row + 1, column + 1]
+    return (1 - down) * upper + down * lower

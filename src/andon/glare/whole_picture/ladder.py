@@ -1,8 +1,9 @@
 """How much light each filter of each level spreads, where the chart's scale is a.
 
-A *rung* is a filter of a level: rung k has ``σ_k = sigma_cells·2^(level−1)·cell·a`` and takes
-``W(σ_k)·χ(σ_k)·(ln σ_{k+1} − ln σ_{k−1})/2`` of a point's light. χ goes from 1 to 0 between two
-angles; what is left of the mixture is the far part's.
+A *rung* is a filter of a level: rung k has σ_k = a·s_k, ``s_k = sigma_cells·2^(level−1)·cell``
+(and what blocks of pixels add, which tells only in the first two), and takes
+``W(σ_k)·χ(s_k)·(ln s_{k+1} − ln s_{k−1})/2`` of a point's light. χ goes from 1 to 0 over a few
+coarse cells, whose angle goes with a as well; the rest of the mixture is the far part's.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.glare.whole_picture.charts import pixel_angles
 from andon.glare.whole_picture.mixture import Mixture, bump
-from andon.glare.whole_picture.splines import filters, sigma_cells
+from andon.glare.whole_picture.splines import BLOCKS_VARIANCE, filters, sigma_cells
+from andon.spaces import View
 
 __all__ = ["Ladder", "Rung"]
 
@@ -23,6 +26,8 @@ Float = NDArray[np.float64]
 # Widths of the first rungs in ln σ, where σ does not grow evenly and the first stands for all that
 # is finer, too: least squares over θ⁻²…θ⁻³, from 2.8 cells of level 1 on (1.9 % at most).
 FIRST_WIDTHS = (0.667, 0.670, 0.464, 0.306)
+# Nodes of what blocks add.
+SCALES = 129
 
 
 @dataclass(frozen=True)
@@ -32,8 +37,8 @@ class Rung:
     Attributes
     ----------
     level, which : of `splines.filters(level)`.
-    sigma : radians where the chart's scale is 1.
-    width : in ln σ.
+    sigma : s, chart units: radians where the chart's scale is 1.
+    width : in ln σ, times χ.
     """
 
     level: int
@@ -49,26 +54,23 @@ class Ladder:
     Attributes
     ----------
     rungs : by σ.
-    log_sigma : (n,) evenly spaced ln σ, σ in radians.
-    share : (n,) W·χ, share of a point's light per ln σ; linear in between, held beyond the ends.
-    left : (n,) 1 − χ.
+    scales, blocks : (m,) what blocks add to σ² in radians², where the chart's scale is `scales`.
+    mixture : W, linear between its nodes, held beyond the ends.
+    span : chart units, the s at which χ begins to fall and those at which it ends.
     """
 
     rungs: tuple[Rung, ...]
-    log_sigma: Float
-    share: Float
-    left: Float
+    scales: Float
+    blocks: Float
+    mixture: Mixture
+    span: tuple[float, float]
 
     @staticmethod
-    def of(mixture: Mixture, cell: float, span: tuple[float, float], least_scale: float) -> Ladder:
-        """The rungs of `mixture` for charts of cells of `cell` and scales from `least_scale` on.
-
-        χ falls over the σ of `span`, in radians.
-        """
-        along = np.clip((mixture.log_sigma - math.log(span[0])) / math.log(span[1] / span[0]), 0, 1)
-        left = along**2 * (3 - 2 * along)
-        share = mixture.share * (1 - left)
-        return Ladder(_rungs(cell, span[1] / least_scale), mixture.log_sigma, share, left)
+    def of(view: View, mixture: Mixture, cell: float, span: tuple[float, float], /) -> Ladder:
+        """The rungs of `mixture` for charts of cells of `cell`."""
+        scales = np.linspace(0, 1, SCALES)
+        blocks = BLOCKS_VARIANCE * pixel_angles(view, scales) ** 2
+        return Ladder(_rungs(cell, span), scales, blocks, mixture, span)
 
     @property
     def levels(self) -> int:
@@ -77,26 +79,43 @@ class Ladder:
 
     def share_of(self, rung: Rung, scale: Float, /) -> Float:
         """(...) share of a point's light that a rung spreads where the chart's scale is a."""
-        log_sigma = math.log(rung.sigma) + np.log(scale)
-        return rung.width * np.interp(log_sigma, self.log_sigma, self.share)
+        blocks = np.interp(scale, self.scales, self.blocks)
+        log_sigma = np.log((rung.sigma * scale) ** 2 + blocks) / 2
+        return rung.width * np.interp(log_sigma, self.mixture.log_sigma, self.mixture.share)
 
-    def per_sr(self, chord: Float, scale: Float, /) -> Float:
-        """(...) what all rungs make at a chord between places of scales a and b, √(ab) given."""
-        parts = [self.share_of(r, scale) * bump(chord, r.sigma * scale) for r in self.rungs]
-        return np.sum(parts, 0)
+    def near(self, scale: Float, /) -> Float:
+        """(..., n) χ at the mixture's σ where the chart's scale is a (...)."""
+        return _near(self.mixture.log_sigma - np.log(scale)[..., None], self.span)
+
+    def per_sr(self, chord: Float, scale: Float, less: Float | float = 0.0, /) -> Float:
+        """(...) what all rungs make at a chord between places of scales a and b, √(ab) given.
+
+        σ² is `less` by so much, in radians², but not by more than half.
+        """
+        total = np.zeros(np.broadcast_shapes(np.shape(chord), np.shape(scale)))
+        for rung in self.rungs:
+            square = (rung.sigma * scale) ** 2
+            sigma = np.sqrt(np.maximum(square - less, square / 2))
+            total += self.share_of(rung, scale) * bump(chord, sigma)
+        return total
 
 
-def _rungs(cell: float, most_sigma: float) -> tuple[Rung, ...]:
-    """Until the least of σ is beyond `most_sigma`, where no light is left."""
+def _near(log_sigma: Float, span: tuple[float, float]) -> Float:
+    along = np.clip((log_sigma - math.log(span[0])) / math.log(span[1] / span[0]), 0, 1)
+    return 1 - along**2 * (3 - 2 * along)
+
+
+def _rungs(cell: float, span: tuple[float, float]) -> tuple[Rung, ...]:
     found: list[tuple[int, int, float]] = []
     level = 1
-    while not found or found[-1][2] < most_sigma:
+    while not found or found[-1][2] < span[1]:
         for which in range(len(filters(level))):
             found.append((level, which, sigma_cells(level, which) * 2 ** (level - 1) * cell))
         level += 1
     sigmas = np.log([sigma for _, _, sigma in found])
-    between = [sigmas[0], *sigmas, 2 * sigmas[-1] - sigmas[-2]]
-    widths = (np.array(between[2:]) - between[:-2]) / 2
+    between = np.array([sigmas[0], *sigmas, 2 * sigmas[-1] - sigmas[-2]])
+    widths = (between[2:] - between[:-2]) / 2
     first = FIRST_WIDTHS[: len(widths)]
     widths[: len(first)] = first
-    return tuple(Rung(*f, float(width)) for f, width in zip(found, widths, strict=True))
+    near = widths * _near(sigmas, span)
+    return tuple(Rung(*f, float(w)) for f, w in zip(found, near, strict=True) if w > 0)

@@ -23,7 +23,7 @@ __all__ = ["Mixture", "bump"]
 Float = NDArray[np.float64]
 
 # σ of the mixture, and how many steps an octave has.
-SIGMA_DEGREES = (0.03, 45.0)
+SIGMA_DEGREES = (0.03, 64.0)
 PER_OCTAVE = 4
 # Angles of the fit; what comes beyond is left to the far part, which has it exactly.
 FIT_DEGREES = (0.1, 40.0)
@@ -78,9 +78,12 @@ class Mixture:
         wanted = kernel.per_sr(theta, core=True) - floor
         return Mixture(log_sigma, _fitted(bumps, wanted, log_sigma), floor)
 
-    def per_sr(self, theta_radians: Float, /, weight: Float | float = 1.0) -> Float:
-        """(...) the integral at angles (...), in sr⁻¹, each σ's share times `weight` (n,)."""
-        return _bumps(theta_radians, self.log_sigma) @ (self.share * weight)
+    def per_sr(self, theta_radians: Float, weight: Float | float = 1.0, /) -> Float:
+        """(...) the integral at angles (...), in sr⁻¹, each σ's share times `weight` (n,).
+
+        With weights (m, n) the result is (..., m).
+        """
+        return _bumps(theta_radians, self.log_sigma) @ (self.share * weight).T
 
 
 def _bumps(theta: Float, log_sigma: Float) -> Float:

@@ -43,7 +43,7 @@ __all__ = ["WholePlan", "plan_whole"]
 
 Float = NDArray[np.float64]
 
-# χ begins to fall at so many coarse cells on the axis, and ends at so many.
+# χ begins to fall at a σ of so many coarse cells, and ends at so many.
 FAR_CELLS = (0.8, 3.2)
 
 
@@ -82,7 +82,7 @@ class WholePlan:
     def resolved(self, scale: Float, /) -> Float:
         """(...) share of light that leaves its place, where the chart's scale is a."""
         near = (self.ladder.share_of(rung, scale) for rung in self.ladder.rungs)
-        return sum(near, np.full_like(scale, self.far.share))
+        return sum(near, np.interp(scale, self.far.scales, self.far.shares))
 
 
 def plan_whole(view: View, kernel: Kernel, /) -> WholePlan:
@@ -92,6 +92,5 @@ def plan_whole(view: View, kernel: Kernel, /) -> WholePlan:
     level = far_level(charts)
     cell = charts[0].cell
     start, end = (cell * 2 ** (level - 1) * cells for cells in FAR_CELLS)
-    least = min(float(c.scale(c.cell_directions(level)).min()) for c in charts)
-    ladder = Ladder.of(mixture, cell, (start, end), least)
+    ladder = Ladder.of(view, mixture, cell, (start, end))
     return WholePlan(view, kernel, charts, ladder, plan_far(charts, level, kernel, mixture, ladder))

@@ -24,9 +24,10 @@ class Scattered:
 
     Attributes
     ----------
-    picture : (H, W, 3) cd/m², (1 − k)·L + veil.
-    glare : (H, W, 3) cd/m², what is added.
-    share : (H, W) k of each pixel: the share of its light that is spread.
+    picture : (H, W, 3) cd/m², (1 − k)·L + glare.
+    glare : (H, W, 3) cd/m², the veil: what is added.
+    share : (H, W) k of each pixel: the share of its light that leaves it. Less than the kernel's
+        where pixels are coarse and keep much in themselves, more by the core where they are fine.
     """
 
     picture: Float

@@ -11,15 +11,21 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SPLINES_VARIANCE", "filters", "level_profile", "sigma_cells", "spline_weights"]
+__all__ = [
+    "BLOCKS_VARIANCE",
+    "SPLINES_VARIANCE",
+    "filters",
+    "level_profile",
+    "sigma_cells",
+    "spline_weights",
+]
 
 Float = NDArray[np.float64]
 
 # Cells², of the spline that light is put in by and of the one it is read by, together.
 SPLINES_VARIANCE = 0.5
-# Cells² of level 1: light comes from blocks of two pixels and is read by blocks, with the same
-# spline, of a lattice about as fine as level 1.
-BLOCKS_VARIANCE = 0.375
+# Pixels²: [1 3 3 1]/4 to blocks of two pixels and [3 1]/4 back, together.
+BLOCKS_VARIANCE = 1.5
 
 
 def spline_weights(places: Float, /) -> tuple[NDArray[np.int64], Float]:
@@ -54,10 +60,10 @@ def filters(level: int, /) -> tuple[tuple[float, ...], ...]:
 
 
 def sigma_cells(level: int, which: int, /) -> float:
-    """σ of a level's point-spread function with one of its filters, in its own cells."""
+    """σ of a level's point-spread function with one of its filters, in its own cells; no blocks."""
     side = filters(level)[which][1:]
     filtered = 2 * sum(tap * (i + 1) ** 2 for i, tap in enumerate(side))
-    return float(np.sqrt(SPLINES_VARIANCE + filtered + BLOCKS_VARIANCE / 4 ** (level - 1)))
+    return float(np.sqrt(SPLINES_VARIANCE + filtered))
 
 
 def level_profile(radii: Float, /) -> Float:

@@ -1,0 +1,15 @@
+// Glare of what an optical see-through display adds; real light glares in the eye by itself.
+
+@group(0) @binding(0) var light: texture_2d<f32>;
+@group(0) @binding(1) var real: texture_2d<f32>;
+
+// Light that is not there without the display.
+@fragment fn virtual_light(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+  let place = vec2i(pixel.xy);
+  return max(textureLoad(light, place, 0) - textureLoad(real, place, 0), vec4f(0.0));
+}
+
+// All of it, to be added to the glare.
+@fragment fn all_light(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+  return textureLoad(light, vec2i(pixel.xy), 0);
+}

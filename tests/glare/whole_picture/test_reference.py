@@ -118,3 +118,11 @@ def test_what_is_no_light_is_refused(wrong):
         veil(light, plan_whole(SMALL, KERNEL))
     with pytest.raises(InputError, match="must be"):
         veil(light[1:], plan_whole(SMALL, KERNEL))
+
+
+def test_no_light_is_less_than_none():
+    view = View("latlong", 96, 48)
+    light = np.zeros((*view.shape, 3))
+    light[20, 40] = 1.0
+    found = veil(light, plan_whole(view, KERNEL))
+    assert found.min() >= -1e-6 * found.max()

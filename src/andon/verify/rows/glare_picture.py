@@ -177,7 +177,7 @@ ROWS: tuple[Row, ...] = (
             "glare",
             0.02,
             "of the veil (RMS)",
-            f"exact convolution of {REAL_SIZE[0]}×{REAL_SIZE[1]} on the sphere; 6 pixels from sources",
+            f"exact convolution of {REAL_SIZE[0]}×{REAL_SIZE[1]} on the sphere, 6 px off sources",
             partial(real_error, file),
         )
         for name, file in REAL.items()

@@ -55,6 +55,10 @@ def rows() -> tuple[Row, ...]:
         glare_flicker,
         glare_models,
         glare_needles,
+<<<<<<< HEAD
+=======
+        glare_picture,
+>>>>>>> b2203f1623423920f9942efee388089098a48f98
         glare_whole,
         glass,
         glass_blur,
@@ -88,6 +92,7 @@ def rows() -> tuple[Row, ...]:
         *glass_frame.ROWS,
         *caustic.ROWS,
         *glare_flicker.ROWS,
+        *glare_picture.ROWS,
         *glare_whole.ROWS,
         *glare_models.ROWS,
         *glare_needles.ROWS,

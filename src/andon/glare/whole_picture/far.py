@@ -100,12 +100,15 @@ def plan_far(
         levels = np.sqrt(chart.scale(to)[:, None] * np.maximum(chart.scale(sources), LEAST_SCALE))
         ends = (chart.scale(to)[:, None] ** 2 + own[lit] ** 2) / 2
         parts.append(table.matrix(chord, levels, ends, covered))
+    matrix = np.concatenate(parts)
+    behind = cells.directions[read] @ sources.T < 0
+    matrix = _not_negative(matrix, behind, (cells.share * own**2)[read])
     scales = np.geomspace(own.min(), 1, SCALES)
     return Far(
         level,
         cells.indices[lit],
         cells.indices[read],
-        np.concatenate(parts) * cells.share[lit] * width**2,
+        matrix * cells.share[lit] * width**2,
         scales,
         table.shares(scales),
     )
@@ -128,6 +131,17 @@ def _cells(charts: tuple[Chart, ...], level: int) -> _Cells:
     fields = zip(*((c.indices, c.directions, c.share, c.read) for c in found), strict=True)
     indices, directions, share, read = (np.concatenate(field) for field in fields)
     return _Cells(indices, directions, share, read)
+
+
+def _not_negative(matrix: Float, behind: NDArray[np.bool_], areas: Float) -> Float:
+    """`matrix` (m, n) with nothing below 0 `behind` (m, n) a source, and no more light there.
+
+    Where the model fades, what the splines spread has been taken off, which may be too much.
+    """
+    lifted = np.maximum(matrix, 0)
+    before, after = (areas @ np.where(behind, part, 0.0) for part in (matrix, lifted))
+    factor = np.divide(before, after, where=(after > 0) & (before > 0), out=np.zeros_like(after))
+    return np.where(behind, lifted * factor, matrix)
 
 
 @dataclass(frozen=True)

@@ -92,7 +92,7 @@ class _Ours:
             for name in ("picture", "seen")
         )
         source.write(np.dstack([self.picture, np.ones(self.view.shape, np.float32)]))
-        self.stage = WholePictureStage(self.gpu, source, self.target, self.plan)
+        self.stage = WholePictureStage(self.gpu, source, self.target, self.plan, finite=True)
 
     def draw(self) -> None:
         """The picture with its veil."""
@@ -129,7 +129,7 @@ class _Ours:
 
     def likeness_with_reference(self) -> float:
         """Of the reference's veil."""
-        return self.likeness(reference.veil(self.picture, self.plan))
+        return self.likeness(reference.scattered(self.picture, self.plan).glare)
 
 
 def _against_fft(size: str, hfov_degrees: float) -> Duel:

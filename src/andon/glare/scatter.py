@@ -24,7 +24,8 @@ from andon.glare.per_source.model import PerSource
 from andon.glare.per_source.reference import veil_of_sources
 from andon.glare.sources.find import FoundSources
 from andon.glare.whole_picture.plan import WholePlan, plan_whole
-from andon.glare.whole_picture.reference import resolved, veil
+from andon.glare.whole_picture.reference import resolved
+from andon.glare.whole_picture.reference import veil as veil_of_all
 from andon.spaces import View
 
 __all__ = ["EngineName", "Scatter", "scatter_all", "scatter_sources"]
@@ -44,8 +45,9 @@ class Scatter:
 
     Attributes
     ----------
-    picture, veil : (H, W, 3); picture = (1 − k)·light + veil.
-    share : k, the mean over the light of the picture of what leaves its pixel.
+    picture, veil : (H, W, 3); picture = (1 − k)·light + veil. Veil holds what is scattered by less
+        than a pixel, too, so that k does not depend on the size of pixels.
+    share : k, the mean over the light of the picture.
     engine : ``gpu`` or ``reference``.
     """
 
@@ -59,22 +61,31 @@ def scatter_all(light: Float, view: View, kernel: Kernel, engine: EngineName, /)
     """Scatters all light (H, W, 3), finite and ≥ 0, of a picture of `view`."""
     plan = plan_whole(view, kernel)
     on_gpu = engine == "gpu" or (engine == "auto" and _has_gpu())
-    spread = _veil_on_gpu(light, plan) if on_gpu else veil(light, plan)
-    return _summed(light, spread, resolved(plan), view, "gpu" if on_gpu else "reference")
+    if on_gpu:
+        spread, left = _veil_on_gpu(light, plan)
+    else:
+        spread, left = veil_of_all(light, plan), resolved(plan)
+    return _summed(light, spread, left, view, kernel, "gpu" if on_gpu else "reference")
 
 
 def scatter_sources(light: Float, view: View, kernel: Kernel, found: FoundSources, /) -> Scatter:
     """Scatters the light of the sources `found` in (H, W, 3); all other light stays."""
     settings = PerSource(least_cd_m2=UNSEEN * found.ambient_cd_m2)
     spread = veil_of_sources(found.simplified(), view, kernel, settings=settings)
-    return _summed(light, spread, kernel.share * (found.labels > 0), view, "reference")
+    left = kernel.share * (found.labels > 0)
+    return _summed(light, spread, left, view, kernel, "reference")
 
 
-def _summed(light: Float, spread: Float, share: Float, view: View, engine: str) -> Scatter:
+def _summed(
+    light: Float, spread: Float, left: Float, view: View, kernel: Kernel, engine: str
+) -> Scatter:
+    """`spread` (H, W, 3) came to other pixels, `left` (H, W) is the share that left each."""
+    share = np.where(left > 0, np.maximum(left, kernel.share), 0)
+    veil = spread + (share - left)[..., None] * light
     weight = light.sum(axis=-1) * view.solid_angles()
     total = float(weight.sum())
-    mean = float((share * weight).sum() / total) if total > 0 else float(share.mean())
-    return Scatter((1 - share[..., None]) * light + spread, spread, mean, engine)
+    mean = float((share * weight).sum() / total) if total > 0 else kernel.share
+    return Scatter((1 - share[..., None]) * light + veil, veil, mean, engine)
 
 
 def _has_gpu() -> bool:
@@ -83,7 +94,8 @@ def _has_gpu() -> bool:
     return adapter_summary() is not None
 
 
-def _veil_on_gpu(light: Float, plan: WholePlan) -> Float:
+def _veil_on_gpu(light: Float, plan: WholePlan) -> tuple[Float, Float]:
+    """(H, W, 3) what comes to the pixels, (H, W) the share that leaves each."""
     from andon.glare.whole_picture.stage import WholePictureStage
     from andon.gpu.device import open_gpu
     from andon.gpu.textures import make_texture
@@ -98,4 +110,5 @@ def _veil_on_gpu(light: Float, plan: WholePlan) -> Float:
     encoder = gpu.device.create_command_encoder()
     stage.encode_glare(encoder, target)
     gpu.device.queue.submit([encoder.finish()])
-    return target.read()[..., :3].astype(np.float64) / scale
+    drawn = target.read().astype(np.float64)
+    return drawn[..., :3] / scale, 1 - drawn[..., 3]

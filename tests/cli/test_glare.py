@@ -163,7 +163,7 @@ def test_what_is_no_light_is_counted(capfd, folder):
         (["night.exr", "-o", "o.png", "--age", "121"], "--age"),
         (["night.exr", "-o", "o.png", "--age", "20,,70"], "--age"),
         (["night.exr", "-o", "o.png", "--age", "-1"], "--age"),
-        (["night.exr", "-o", "o.png", "--pigment", "green"], "--pigment"),
+        (["night.exr", "-o", "o.png", "--pigment", "purple"], "--pigment"),
         (["night.exr", "-o", "o.png", "--pupil", "0"], "--pupil"),
         (["night.exr", "-o", "o.png", "--glasses", "sun"], "--glasses"),
         (["night.exr", "-o", "o.png", "--mist", "nan"], "--mist"),

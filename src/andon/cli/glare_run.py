@@ -28,7 +28,7 @@ def run(options: GlareOptions) -> None:
     ages = _check(options)
     seen = _read(options)
     results = _results(options, seen, ages)
-    for warning in seen.warnings:
+    for warning in (*seen.warnings, *results[0].warnings):
         note(warning)
     _write(options, seen, results)
     for line in _told(results[-1]):

@@ -24,7 +24,7 @@ def komorebi(*words):
 
 def test_a_mask_as_a_film(mask, tmp_path, capfd):
     out = tmp_path / "film.webp"
-    assert komorebi(mask, "-o", out, "--seconds", 0.2, "--fps", 20) == 0
+    assert komorebi(mask, "-o", out, "--seconds", 2, "--fps", 2, "--seed", 5) == 0
     with Image.open(out) as film:
         assert film.n_frames == 4
         assert film.size == (64, 40)

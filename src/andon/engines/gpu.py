@@ -28,7 +28,7 @@ from andon.glare.highlights.tile_stage import TileStage
 from andon.glare.highlights.tiles import Highlight
 from andon.glass.layers import Layered
 from andon.glow.stage import GlowStage
-from andon.gpu.bindings import bind_group
+from andon.gpu.bindings import BindGroup, bind_group
 from andon.gpu.device import open_gpu
 from andon.gpu.passes import FullscreenPass
 from andon.gpu.textures import Texture, make_texture
@@ -105,25 +105,31 @@ class _View:
             "structs": STRUCTS,
             "variants": gbuffer.projection_variant(view) | engine.variants,
         }
-        self.highlights: HighlightStage | None = None
-        if engine.finishes is not None:
-            variants = options["variants"] | {highlights.SUM: engine.lamps_mirrored}
-            own = engine.finishes, groups, STRUCTS, variants
-            self.highlights = highlights.HighlightStage(gpu, view, *own)
-            self.tiles = TileStage(
-                gpu,
-                view,
-                self.highlights.alone,
-                self.luminance,
-                seen.view_buffer,
-                frame.luminance_per_unit,
-            )
+        self._make_highlights(engine, groups, options["variants"])
         entry = self._entry_point(prepared)
         self.relit = FullscreenPass(gpu, FRAME, entry, ["rgba16float"], groups, **options)
         # Half floats end at 65504, sunlight does not, and this picture is for machines.
         self.lux_map = make_texture(gpu, "rgba32float", view.width, view.height, label="lux")
         self.lux = FullscreenPass(
             gpu, FRAME, "illuminance_map", [self.lux_map.format], groups, **options
+        )
+
+    def _make_highlights(
+        self, engine: GpuEngine, groups: list[BindGroup], variants: dict[str, str]
+    ) -> None:
+        self.highlights: HighlightStage | None = None
+        if engine.finishes is None:
+            return
+        gpu, frame = engine.gpu, self.frame
+        own = engine.finishes, groups, STRUCTS, variants | {highlights.SUM: engine.lamps_mirrored}
+        self.highlights = highlights.HighlightStage(gpu, frame.view, *own)
+        self.tiles = TileStage(
+            gpu,
+            frame.view,
+            self.highlights.alone,
+            self.luminance,
+            self.surface.surface.view_buffer,
+            frame.luminance_per_unit,
         )
 
     def changed_rectangles(self, moment: Moment) -> list[Rectangle]:

@@ -19,6 +19,6 @@ Rest
 Gate
     Glare has a halo and needles where a highlight is 40 times its surround or more (`contrast`).
 
-Sources: Cook and Torrance 1982; Walter et al. 2007; Heitz 2014; Schlick 1994; Lazarov 2013 as
-fitted by Karis 2014; the glare paper, sections on metal and water.
+Sources: Cook and Torrance 1982; Walter et al. 2007; Heitz 2014; Schlick 1994; the glare paper,
+sections on metal and water.
 """

@@ -125,7 +125,8 @@ def facets_of(
     own = seen.is_object & seen.valid
     if seen.body_id is not None:
         own &= seen.body_id < 0
-    for slot in np.unique(seen.material_id[own]).tolist():
+    slots: list[int] = np.unique(seen.material_id[own]).tolist()
+    for slot in slots:
         finish = finishes[slot]
         if finish is not None:
             mask = own & (seen.material_id == slot)
@@ -139,7 +140,8 @@ def _facets(seen: Surface, mask: NDArray[np.bool_], finish: Finish, time_seconds
     if finish.waves is None:
         normal, widening = ground, _curvature(seen)[mask]
     else:
-        steps = (step[mask] for step in _footprint(seen))
+        across, down = _footprint(seen)
+        steps = across[mask], down[mask]
         slopes, widening = slopes_at(finish.waves, position, *steps, time_seconds)
         # Of a surface seen from below the normal points down; so do its ripples.
         side = np.where(ground[:, 1] < 0, -1.0, 1.0)[:, None]

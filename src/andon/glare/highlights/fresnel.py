@@ -16,7 +16,7 @@ DIELECTRIC = 0.04
 def schlick(cosine: ArrayLike, straight: ArrayLike, /) -> Float:
     """(...) reflectance at `cosine` of the angle of incidence; `straight` is that at 0°.
 
-    Source: Schlick 1994. Within 0.01 of the exact term for an index of 1.5.
+    Source: Schlick 1994. Within 0.05 of the exact term for an index of 1.5.
     """
     straight = np.asarray(straight, np.float64)
     return straight + (1 - straight) * (1 - np.clip(cosine, 0, 1)) ** 5

@@ -1,6 +1,6 @@
 // What a facet mirrors of each kind of lamp, and of wide light: reference.py.
 
-//!import andon/glare/highlights/outlines.wgsl
+//!import andon/glare/highlights/areas.wgsl
 //!import andon/glare/highlights/albedo.wgsl
 //!import andon/glare/highlights/sum.wgsl
 

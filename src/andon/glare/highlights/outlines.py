@@ -26,6 +26,10 @@ Float = NDArray[np.float64]
 # Of a round outline; the polygon is that of the same area.
 CORNERS = 16
 SAME_AREA = float(np.sqrt(2 * np.pi / (CORNERS * np.sin(2 * np.pi / CORNERS))))
+# Each half circle of a tube, and each of its sides, is cut into so many parts; stretched along the
+# tube, half a circle keeps its area.
+TUBE_PARTS = 4
+HALF_SAME_AREA = float(np.pi / (TUBE_PARTS * np.sin(np.pi / TUBE_PARTS)))
 # Into how many parts a straight edge is cut, since it is curved among half vectors: of polygons,
 # and of meshes and pictures, whose edges are shorter.
 POLYGON_PARTS, FACET_PARTS = 4, 2
@@ -122,7 +126,7 @@ def frames(axes: Float, /) -> tuple[Float, Float]:
 
 
 def _turns() -> Float:
-    return np.arange(CORNERS) * (2 * np.pi / CORNERS)
+    return np.arange(CORNERS, dtype=np.float64) * (2 * np.pi / CORNERS)
 
 
 def _closed(corners: list[Float], luminance: Float) -> Iterator[Edge]:
@@ -144,13 +148,18 @@ def _disk(lamp: DiskLamp, points: Float) -> Iterator[Edge]:
 
 
 def _tube(lamp: TubeLamp, points: Float) -> list[Float]:
-    """Half a circle about either end, each square to the line of sight to it."""
+    """Half a circle about either end, each square to the line of sight to it, and both sides."""
     start, end = (lamp.ends_m[k] - points for k in (0, 1))
     axis = end - start
-    return [
-        *_half_circle(end, axis, lamp.radius_m, 1.0),
-        *_half_circle(start, axis, lamp.radius_m, -1.0),
+    arcs = [
+        _half_circle(end, axis, lamp.radius_m, 1.0),
+        _half_circle(start, axis, lamp.radius_m, -1.0),
     ]
+    corners: list[Float] = []
+    for arc, following in (arcs, arcs[::-1]):
+        step = (following[0] - arc[-1]) / TUBE_PARTS
+        corners += [*arc, *(arc[-1] + part * step for part in range(1, TUBE_PARTS))]
+    return corners
 
 
 def _half_circle(end: Float, axis: Float, radius_m: float, way: float) -> list[Float]:
@@ -160,10 +169,12 @@ def _half_circle(end: Float, axis: Float, radius_m: float, way: float) -> list[F
     along /= np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), 1e-9)
     across = np.cross(sight, along)
     sine = np.minimum(radius_m / distance, 0.999)
-    wide = SAME_AREA * radius_m / np.sqrt(1 - sine**2)
-    # From −90° to 90°, the ends included.
-    turns = np.linspace(-np.pi / 2, np.pi / 2, CORNERS // 2)
-    return [end + way * wide * (np.cos(turn) * along + np.sin(turn) * across) for turn in turns]
+    wide = way * radius_m / np.sqrt(1 - sine**2)
+    turns = np.linspace(-np.pi / 2, np.pi / 2, TUBE_PARTS + 1).tolist()
+    return [
+        end + wide * (HALF_SAME_AREA * np.cos(turn) * along + np.sin(turn) * across)
+        for turn in turns
+    ]
 
 
 def _facets(edges: FacetEdges, points: Float, parts: int) -> Iterator[Edge]:

@@ -109,7 +109,7 @@ def _source(moments: Moments, blob: int, name: str, clipped: bool) -> Source:
     # The tangent plane has sines of angles.
     b, a = np.arcsin(np.minimum(2 * np.sqrt(np.maximum(variances, 1e-16)), 1.0)).tolist()
     outline = ellipse_outline(min(a, LARGEST_RADIANS), min(b, LARGEST_RADIANS))
-    along = axes[:, 1] @ plane
+    along = np.asarray(axes[:, 1] @ plane, np.float64)
     return Source(direction, moments.illuminance_lux[blob], outline, along, name, clipped)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.textures import uniform_buffer, write_buffer
-from andon.lamps import AreaLamp, Lamp
+from andon.lamps import Lamp
 from andon.transport.direct.area_buffers import AreaBuffers
 from andon.transport.direct.balls.buffers import BallBuffers
 from andon.transport.direct.balls.model import GlassBall
@@ -24,8 +24,7 @@ from andon.transport.direct.records import (
 from andon.transport.direct.shadows.caster_buffers import CasterBuffers
 from andon.transport.direct.shadows.maps import NEAR_M, ShadowMaps
 from andon.transport.direct.shadows.soft_maps import SoftMaps
-from andon.transport.direct.soft import probes
-from andon.transport.direct.sum import lamp_terms, sum_of_lamps
+from andon.transport.direct.sum import lamp_terms, softenings, sum_of_lamps
 
 __all__ = ["FILTER", "SOFT_FILTER", "STRUCTS", "SUM", "DirectStage"]
 
@@ -83,14 +82,7 @@ class DirectStage:
             captured=captured,
         )
         self.terms = lamp_terms(lamps, self.maps.layers, luminaires.tables)
-        counts = {
-            lamp.name: lamp.shadow.samples
-            for lamp in lamps
-            if isinstance(lamp, AreaLamp) and lamp.shadow is not None
-        }
-        self.softening = {
-            name: (self.soft.firsts[name], count, probes(count)) for name, count in counts.items()
-        }
+        self.softening = softenings(lamps, self.soft.firsts)
         self.variants = {
             SUM: code,
             FILTER.format("none"): FILTER.format(self.maps.filter),

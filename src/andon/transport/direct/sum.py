@@ -13,7 +13,7 @@ from andon.lamps import AnyAreaLamp, Lamp
 from andon.transport.direct.records import form_of
 from andon.transport.direct.soft import probes
 
-__all__ = ["lamp_terms", "sum_of_lamps"]
+__all__ = ["lamp_terms", "softenings", "sum_of_lamps"]
 
 
 def sum_of_lamps(
@@ -73,6 +73,18 @@ def lamp_terms(
         lamp.name: _term(number, lamp, layers, tables)
         for number, lamp in enumerate(lamps)
         if not isinstance(lamp, AnyAreaLamp)
+    }
+
+
+def softenings(
+    lamps: Sequence[Lamp], firsts: Mapping[str, int], /
+) -> dict[str, tuple[int, int, int]]:
+    """Name of a shadowed area lamp → first sample, samples, and how many of these are probes."""
+    shadows = {lamp.name: lamp.shadow for lamp in lamps if isinstance(lamp, AnyAreaLamp)}
+    return {
+        name: (firsts[name], shadow.samples, probes(shadow.samples))
+        for name, shadow in shadows.items()
+        if shadow is not None
     }
 
 

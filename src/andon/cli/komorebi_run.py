@@ -78,10 +78,6 @@ def _of_glare(options: KomorebiOptions) -> GlareOptions:
     )
 
 
-<<<<<<< HEAD
-def canopy_of(options: KomorebiOptions) -> Canopy:
-    """Leaves and gaps of the options' picture. Raises `InputError` where it shows none."""
-=======
 def _listed(options: KomorebiOptions) -> Canopy:
     """Of a list, which has neither pixels nor leaves."""
     from andon.files.gaps import read_gap_list
@@ -94,10 +90,10 @@ def _listed(options: KomorebiOptions) -> Canopy:
     return canopy_of_list(read_gap_list(options.leaves), view, most=options.gaps or 500)
 
 
-def _canopy(options: KomorebiOptions) -> Canopy:
+def canopy_of(options: KomorebiOptions) -> Canopy:
+    """Leaves and gaps of the options' picture or list. Raises `InputError` where it has none."""
     if options.leaves.suffix.lower() in (".csv", ".json"):
         return _listed(options)
->>>>>>> 1bd7f7fe655f8bfb31b66742aaa6f3fa7f96218e
     from andon.files.pictures import read_picture
     from andon.glare.calibration import calibrated
     from andon.glare.cleaning import cleaned

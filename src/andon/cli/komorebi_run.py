@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from andon.glare.komorebi.seen import Seen
     from andon.lamps.flicker import Flicker
 
-__all__ = ["run"]
+__all__ = ["canopy_of", "drawn_by", "run"]
 
 # Size of the picture of a list of gaps.
 LISTED_PX = (960, 540)
@@ -30,7 +30,7 @@ LISTED_PX = (960, 540)
 def run(options: KomorebiOptions) -> None:
     """Reads, draws, writes. Raises `InputError` before anything is drawn."""
     times = _check(options)
-    canopy = _canopy(options)
+    canopy = canopy_of(options)
     seen = _seen(options, canopy)
     scale = exposure_of(options.exposure)
     if scale is None:
@@ -39,7 +39,7 @@ def run(options: KomorebiOptions) -> None:
     _tell(seen.komorebi, scale)
     height, width = canopy.view.shape
 
-    picture = _drawn_by(seen, options.engine)
+    picture = drawn_by(seen, options.engine)
 
     def draw(time_seconds: float) -> NDArray[np.uint8]:
         from andon.cli.glare_outputs import exposed
@@ -90,7 +90,8 @@ def _listed(options: KomorebiOptions) -> Canopy:
     return canopy_of_list(read_gap_list(options.leaves), view, most=options.gaps or 500)
 
 
-def _canopy(options: KomorebiOptions) -> Canopy:
+def canopy_of(options: KomorebiOptions) -> Canopy:
+    """Leaves and gaps of the options' picture or list. Raises `InputError` where it has none."""
     if options.leaves.suffix.lower() in (".csv", ".json"):
         return _listed(options)
     from andon.files.pictures import read_picture
@@ -145,7 +146,7 @@ def _seen(options: KomorebiOptions, canopy: Canopy) -> Seen:
     return Seen(shown, eye, options.model, options.seed)
 
 
-def _drawn_by(seen: Seen, engine: str) -> Callable[[float], NDArray[np.float64]]:
+def drawn_by(seen: Seen, engine: str) -> Callable[[float], NDArray[np.float64]]:
     """What draws moments: the GPU where there is one, unless the reference is asked for."""
     if engine == "reference":
         return seen.picture

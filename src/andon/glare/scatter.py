@@ -24,8 +24,7 @@ from andon.glare.per_source.model import PerSource
 from andon.glare.per_source.reference import veil_of_sources
 from andon.glare.sources.find import FoundSources
 from andon.glare.whole_picture.plan import WholePlan, plan_whole
-from andon.glare.whole_picture.reference import resolved
-from andon.glare.whole_picture.reference import veil as veil_of_all
+from andon.glare.whole_picture.reference import resolved, veil
 from andon.spaces import View
 
 __all__ = ["EngineName", "Scatter", "scatter_all", "scatter_sources"]
@@ -60,32 +59,30 @@ class Scatter:
 def scatter_all(light: Float, view: View, kernel: Kernel, engine: EngineName, /) -> Scatter:
     """Scatters all light (H, W, 3), finite and ≥ 0, of a picture of `view`."""
     plan = plan_whole(view, kernel)
-    on_gpu = engine == "gpu" or (engine == "auto" and _has_gpu())
-    if on_gpu:
-        spread, left = _veil_on_gpu(light, plan)
-    else:
-        spread, left = veil_of_all(light, plan), resolved(plan)
-    return _summed(light, spread, left, view, kernel, "gpu" if on_gpu else "reference")
+    leaves = resolved(plan)
+    share = np.maximum(leaves, kernel.share)
+    if engine == "gpu" or (engine == "auto" and _has_gpu()):
+        return _summed(light, _glare_on_gpu(light, plan), share, view, kernel, "gpu")
+    glare = veil(light, plan) + (share - leaves)[..., None] * light
+    return _summed(light, glare, share, view, kernel, "reference")
 
 
 def scatter_sources(light: Float, view: View, kernel: Kernel, found: FoundSources, /) -> Scatter:
     """Scatters the light of the sources `found` in (H, W, 3); all other light stays."""
     settings = PerSource(least_cd_m2=UNSEEN * found.ambient_cd_m2)
     spread = veil_of_sources(found.simplified(), view, kernel, settings=settings)
-    left = kernel.share * (found.labels > 0)
-    return _summed(light, spread, left, view, kernel, "reference")
+    share = kernel.share * (found.labels > 0)
+    return _summed(light, spread, share, view, kernel, "reference")
 
 
 def _summed(
-    light: Float, spread: Float, left: Float, view: View, kernel: Kernel, engine: str
+    light: Float, glare: Float, share: Float, view: View, kernel: Kernel, engine: str
 ) -> Scatter:
-    """`spread` (H, W, 3) came to other pixels, `left` (H, W) is the share that left each."""
-    share = np.where(left > 0, np.maximum(left, kernel.share), 0)
-    veil = spread + (share - left)[..., None] * light
+    """`glare` (H, W, 3) is added, `share` (H, W) of each pixel's light taken."""
     weight = light.sum(axis=-1) * view.solid_angles()
     total = float(weight.sum())
     mean = float((share * weight).sum() / total) if total > 0 else kernel.share
-    return Scatter((1 - share[..., None]) * light + veil, veil, mean, engine)
+    return Scatter((1 - share[..., None]) * light + glare, glare, mean, engine)
 
 
 def _has_gpu() -> bool:
@@ -94,8 +91,8 @@ def _has_gpu() -> bool:
     return adapter_summary() is not None
 
 
-def _veil_on_gpu(light: Float, plan: WholePlan) -> tuple[Float, Float]:
-    """(H, W, 3) what comes to the pixels, (H, W) the share that leaves each."""
+def _glare_on_gpu(light: Float, plan: WholePlan) -> Float:
+    """(H, W, 3) what is added."""
     from andon.glare.whole_picture.stage import WholePictureStage
     from andon.gpu.device import open_gpu
     from andon.gpu.textures import make_texture
@@ -110,5 +107,4 @@ def _veil_on_gpu(light: Float, plan: WholePlan) -> tuple[Float, Float]:
     encoder = gpu.device.create_command_encoder()
     stage.encode_glare(encoder, target)
     gpu.device.queue.submit([encoder.finish()])
-    drawn = target.read().astype(np.float64)
-    return drawn[..., :3] / scale, 1 - drawn[..., 3]
+    return target.read()[..., :3].astype(np.float64) / scale

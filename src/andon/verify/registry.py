@@ -53,10 +53,16 @@ def rows() -> tuple[Row, ...]:
         caustic,
         gaze,
         glare_flicker,
+        glare_highlights,
         glare_models,
         glare_needles,
         glare_picture,
+<<<<<<< HEAD
+=======
+        glare_picture,
+>>>>>>> a84641fb047682e075835a8487a2f3ebcd99a6a1
         glare_whole,
+        glare_numbers,
         glass,
         glass_blur,
         glass_frame,
@@ -91,6 +97,8 @@ def rows() -> tuple[Row, ...]:
         *glare_flicker.ROWS,
         *glare_picture.ROWS,
         *glare_whole.ROWS,
+        *glare_highlights.ROWS,
         *glare_models.ROWS,
         *glare_needles.ROWS,
+        *glare_numbers.ROWS,
     )

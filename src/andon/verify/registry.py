@@ -55,10 +55,7 @@ def rows() -> tuple[Row, ...]:
         glare_flicker,
         glare_models,
         glare_needles,
-<<<<<<< HEAD
-=======
         glare_picture,
->>>>>>> b2203f1623423920f9942efee388089098a48f98
         glare_whole,
         glass,
         glass_blur,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.engines.glare import MOST_SOURCES, SceneGlare, taken_share
+from andon.engines.glare_lamps import UnpicturedLamps
 from andon.glare.needles.stage import NeedleStage
 from andon.glare.per_source.model import PerSource
 from andon.glare.per_source.stage import PerSourceStage
@@ -19,7 +21,9 @@ from andon.gpu.device import Gpu
 from andon.gpu.layout import HostStruct
 from andon.gpu.passes import FullscreenPass, color_attachment
 from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
-from andon.quantities import CameraFrame
+from andon.lamps import Lamp
+from andon.quantities import CameraFrame, Geometry
+from andon.transport.direct.records import MAX_LAMPS
 
 __all__ = ["GlareView"]
 
@@ -47,9 +51,13 @@ class GlareView:
         glare: SceneGlare,
         frame: CameraFrame,
         light: Texture,
+        geometry: Geometry,
         real_linear: NDArray[Any] | None = None,
     ) -> None:
-        """`light` rgba16float; `real_linear` (H, W, 3): what glares by itself, see-through."""
+        """`light` rgba16float; `real_linear` (H, W, 3): what glares by itself, see-through.
+
+        `geometry` hides lamps.
+        """
         view, per_unit = frame.view, frame.luminance_per_unit
         self.gpu, self.glare, self.view = gpu, glare, view
         self.seen = make_texture(gpu, "rgba16float", view.width, view.height, label="seen")
@@ -64,6 +72,8 @@ class GlareView:
         if glare.plans:
             self._veil = WholePictureStage(gpu, light, self.seen, glare.plans[view.name])
         self._stars = PerSourceStage(gpu, view, MOST_SOURCES, luminance_per_unit=per_unit)
+        self._unpictured = UnpicturedLamps(geometry, HALF_MOST * per_unit)
+        self._lamps = PerSourceStage(gpu, view, MAX_LAMPS, luminance_per_unit=per_unit)
         self._taken = _Taken(gpu, light, self.seen, per_unit)
         self._needles: NeedleStage | None = None
         if glare.needles is not None:
@@ -78,9 +88,11 @@ class GlareView:
             self._virtual.encode(encoder)
         self._find.encode(encoder)
 
-    def update(self) -> None:
+    def update(self, lamps: Sequence[Lamp]) -> None:
         """Finds the sources, once what was recorded has run."""
-        self.found = found = self._find.read()
+        found, unpictured = self._unpictured.split(lamps, self._find.read(), self.view)
+        self.found = found
+        self._lamps.update(unpictured, self.glare.kernel)
         seen = self.glare.around(found, self.view)
         if self._needles is not None:
             self._needles.update(seen.needles)
@@ -119,6 +131,7 @@ class GlareView:
 
     def _encode_stars(self, encoder: Any, target: Texture) -> None:
         self._stars.encode(encoder, target)
+        self._lamps.encode(encoder, target)
         if self._needles is not None:
             self._needles.encode(encoder, target)
 

@@ -12,6 +12,7 @@ from andon.composite import reference as composite
 from andon.display import ost
 from andon.display import reference as display
 from andon.display.model import Seen
+from andon.engines.glare_lamps import UnpicturedLamps
 from andon.engines.glare_reference import glare_seen
 from andon.engines.glass import SceneGlass
 from andon.engines.moment import Moment
@@ -64,6 +65,7 @@ class ReferenceEngine:
         self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
         self._layered: Layered | None = None
         self._glare: Luminance | None = None
+        self._unpictured = UnpicturedLamps(prepared.surface.shadow_casters)
         self._mirrored: Mirrored | None = None
         self._blurred: tuple[float, GlassModel | None] = (0.0, None)
         self.maps_redrawn = 0
@@ -261,7 +263,7 @@ class ReferenceEngine:
             unlit = composite.unlit_linear(frame, self.prepared.ambient)
             real = frame.luminance_per_unit * ost.real_light(unlit, through)
             light = np.maximum(all_light - real, 0)
-        stays, added = glare_seen(own, light, frame.view)
+        stays, added = glare_seen(own, light, frame.view, moment.lamps, self._unpictured)
         self._glare = Luminance(added, word)
         return Luminance((stays if through is None else all_light) + added, word)
 

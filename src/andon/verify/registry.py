@@ -56,13 +56,9 @@ def rows() -> tuple[Row, ...]:
         glare_highlights,
         glare_models,
         glare_needles,
-        glare_picture,
-<<<<<<< HEAD
-=======
-        glare_picture,
->>>>>>> a84641fb047682e075835a8487a2f3ebcd99a6a1
-        glare_whole,
         glare_numbers,
+        glare_picture,
+        glare_whole,
         glass,
         glass_blur,
         glass_frame,

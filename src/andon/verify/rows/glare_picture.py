@@ -101,8 +101,9 @@ def motion_change() -> float:
     targets = view.directions()[10:-10:9, 30:-30:9].reshape(-1, 3)
     turns = STEP_PIXELS / view.fx * np.arange(FRAMES)
     ratios = np.stack([_ratios(plan, targets, turn) for turn in turns])
-    ratios = ratios[:, np.isfinite(ratios).all(0)]
-    return float(np.sqrt(np.mean((ratios.std(0) / ratios.mean(0)) ** 2)))
+    ratios = ratios[:, np.all(np.isfinite(ratios), axis=0)]
+    change: Float = ratios.std(0) / ratios.mean(0)
+    return float(np.sqrt(np.mean(change**2)))
 
 
 def _ratios(plan: WholePlan, targets: Float, turn: float) -> Float:

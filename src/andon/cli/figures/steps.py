@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from andon.cli.figures.model import Asked, Panel
 from andon.display.eye_response import printed
+from andon.glare.around import halo_share
 from andon.glare.gate import gate
 from andon.glare.kernel import Kernel
 from andon.glare.needles import needles_of
@@ -17,7 +18,7 @@ from andon.glare.needles.reference import draw
 from andon.glare.per_source.reference import halos_of_sources
 from andon.glare.scatter import scatter_all
 from andon.glare.sources.find import FoundSources, find_sources
-from andon.glare.stars import MOST_STARS, halo_share
+from andon.glare.stars import MOST_STARS
 from andon.observer.spread.family import spread_function
 from andon.quantities import photometric
 from andon.spaces import View

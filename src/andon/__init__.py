@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from andon.files.volumes import Cells, Distances, ProbeVolume, Zone, plain_volume
     from andon.files.volumes import read_volume as read_probe_volume
     from andon.files.volumes import write_volume as write_probe_volume
+    from andon.glare.picture import GlareResult, glare_of_picture
     from andon.lamps import (
         DirectionalLamp,
         DiskLamp,
@@ -79,6 +80,7 @@ _PUBLIC = {
     "Distribution": "files",
     "Frame": "pipeline",
     "Geometry": "quantities",
+    "GlareResult": "glare.picture",
     "GoniometricLamp": "lamps",
     "HemisphereLamp": "lamps",
     "Illuminance": "quantities",
@@ -108,6 +110,7 @@ _PUBLIC = {
     "Zone": "files.volumes",
     "bake_file": "bake",
     "bake_probes": "bake",
+    "glare_of_picture": "glare.picture",
     "harmonics": "harmonics",
     "load_scene": "scene",
     "look_at": "spaces",
@@ -138,6 +141,7 @@ __all__ = [
     "Distribution",
     "Frame",
     "Geometry",
+    "GlareResult",
     "GoniometricLamp",
     "HemisphereLamp",
     "Illuminance",
@@ -167,6 +171,7 @@ __all__ = [
     "Zone",
     "bake_file",
     "bake_probes",
+    "glare_of_picture",
     "harmonics",
     "load_scene",
     "look_at",

@@ -426,7 +426,7 @@ def test_a_lamp_with_a_baked_transport(refused_scene):
         ),
         (
             ["demo", "phto"],
-            "there is no demonstration 'phto', there is photo, glass; did you mean 'photo'?",
+            "there is no demonstration 'phto', there is photo, glass, glare; did you mean 'photo'?",
         ),
     ],
 )

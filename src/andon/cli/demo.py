@@ -14,15 +14,18 @@ from andon.errors import InputError, MachineError, nearest_name
 
 __all__ = ["run"]
 
-DEMONSTRATIONS = ("photo", "glass")
+DEMONSTRATIONS = ("photo", "glass", "glare")
 # What the second relit picture keeps of the photograph's own light.
 DIMMING = 0.15
+# Whose eyes the demonstration of glare has; the last are the scene's.
+AGES = (20.0, 45.0, 70.0)
 
 
 def run(name: str, out: Path, engine: str) -> None:
     """Writes pictures into `out`.
 
-    photo: contact-sheet.png, relit.png, relit-dimmed.png and illuminance.exr; glass: glass.png.
+    photo: contact-sheet.png, relit.png, relit-dimmed.png and illuminance.exr; glass: glass.png;
+    glare: glare.png, and beside younger eyes and none glare-ages.png.
     """
     if name not in DEMONSTRATIONS:
         near = nearest_name(name, list(DEMONSTRATIONS))
@@ -36,7 +39,7 @@ def run(name: str, out: Path, engine: str) -> None:
     except OSError as error:
         raise MachineError(f"{out}: cannot be made: {error.strerror}") from error
     with resources.as_file(resources.files("andon") / "data" / "motorcycle") as folder:
-        {"photo": _photo, "glass": _glass}[name](folder, out, engine)
+        {"photo": _photo, "glass": _glass, "glare": _glare}[name](folder, out, engine)
 
 
 def _glass(folder: Path, out: Path, engine: str) -> None:
@@ -44,6 +47,33 @@ def _glass(folder: Path, out: Path, engine: str) -> None:
     from andon.cli.glass import run as draw
 
     draw(GlassOptions(folder / "glass.toml", out / "glass.png", engine=engine))
+
+
+def _glare(folder: Path, out: Path, engine: str) -> None:
+    from andon.display.false_colour import contact_sheet
+    from andon.engines.glare import glare_of
+    from andon.engines.prepared import prepare
+    from andon.files.pictures import write_picture
+    from andon.pipeline import Frame, Renderer
+    from andon.scene import Scene, load_scene
+
+    start = perf_counter()
+    scene = load_scene(folder / "glare.toml")
+    prepared = prepare(scene)
+
+    def seen(scene: Scene | None) -> Frame:
+        dimming = np.asarray(prepared.ambient.dimming)
+        glare = None if scene is None else glare_of(scene, prepared.frames, dimming)
+        return Renderer(replace(prepared, glare=glare), engine).render()  # type: ignore[arg-type]
+
+    tiles = [("without glare", seen(None).image.rgb)]
+    for age in AGES:
+        observer = scene.observer.model_copy(update={"age": age})
+        frame = seen(scene.model_copy(update={"observer": observer}))
+        tiles.append((f"{age:.0f} years", frame.image.rgb))
+    write_picture(out / "glare.png", tiles[-1][1])
+    write_picture(out / "glare-ages.png", contact_sheet(tiles, columns=2))
+    print(f"{perf_counter() - start:.1f} s in all; look at {out / 'glare-ages.png'}")
 
 
 def _photo(folder: Path, out: Path, engine: str) -> None:

@@ -43,7 +43,7 @@ class GlareOptions:
         str, typer.Option(metavar="YEARS[,…]", help="0…120; several make a sheet side by side.")
     ] = "25"
     pigment: Annotated[
-        str, typer.Option(metavar="brown|blue|NUMBER", help="Of the eyes; CIE's numbers: 0…1.2.")
+        str, typer.Option(metavar="brown|blue|NUMBER", help="Of the eyes; as CIE has it: 0…1.2.")
     ] = "brown"
     pupil: Annotated[
         str, typer.Option(metavar="auto|MM", help="Diameter; auto: of the picture's light.")

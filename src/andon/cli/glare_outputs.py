@@ -65,7 +65,8 @@ def exposed(light: Float, units_per_cd_m2: float, tone: Tone = "hue") -> Rgb:
 def caption(result: GlareResult) -> str:
     """What stands above a picture of a sheet."""
     eye, veil = result.eye, result.numbers.veil_cd_m2
-    unit = "cd/m²" if result.photometry == "absolute" else "(relative)"
+    # Pillow's own font has no superscripts.
+    unit = "cd/m2" if result.photometry == "absolute" else "(relative)"
     return (
         f"{eye.age_years:g} years, pigment {eye.pigment:g}, pupil {eye.pupil_mm:.1f} mm, "
         f"{result.model.name}: veil ahead {veil:.3g} {unit}"
@@ -107,7 +108,7 @@ def write_veil(path: Path, result: GlareResult) -> None:
     if path.suffix.lower() == ".exr":
         write_exr(path, result.veil.astype(np.float32), unit="cd/m2", photometry=result.photometry)
         return
-    unit = "cd/m²" if result.photometry == "absolute" else "relative"
+    unit = "cd/m2" if result.photometry == "absolute" else "relative"
     write_png(path, false_colour(photometric(result.veil), unit))
 
 

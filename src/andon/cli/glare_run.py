@@ -27,9 +27,9 @@ def run(options: GlareOptions) -> None:
     """Reads, scatters, writes. Raises `InputError` before anything is written."""
     ages = _check(options)
     seen = _read(options)
-    for warning in seen.warnings:
-        note(warning)
     results = _results(options, seen, ages)
+    for warning in (*seen.warnings, *results[0].warnings):
+        note(warning)
     _write(options, seen, results)
     for line in _told(results[-1]):
         note(line)

@@ -4,25 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from andon.errors import InputError, nearest_name
 
 if TYPE_CHECKING:
     from andon.cli.glare import GlareOptions
     from andon.files.pictures import Picture
-    from andon.observer.spread.model import Eye, Glasses
+    from andon.observer.spread.model import Eye
     from andon.spaces import View
 
 __all__ = ["GLASSES", "ages_of", "eye_of", "gaze_of", "model_of", "one_of", "view_of"]
 
-PIGMENTS = {"brown": 0.5, "blue": 1.2}
-# What opticians mean by moderate short sight begins at −3 dioptres.
-GLASSES: dict[str, tuple[Glasses, float]] = {
-    "none": ("none", 0.0),
-    "myopic": ("spectacles", -3.0),
-    "contact": ("contact-lenses", 0.0),
-}
+# What is typed, and its name among the observer's presets.
+GLASSES = {"none": "none", "myopic": "short-sighted", "contact": "contact-lenses"}
 MOST_AGES = 8
 
 
@@ -48,26 +43,24 @@ def ages_of(typed: str) -> tuple[float, ...]:
 
 def eye_of(options: GlareOptions, age: float, level_cd_m2: float | None) -> Eye:
     """The eye of one age; `level_cd_m2` is what it is adapted to, None where that is not known."""
+    from andon.observer.presets import EYE_COLOURS, WORN, adaptation_of
     from andon.observer.pupil import watson_yellott_mm
-    from andon.observer.spread.model import Adaptation, Eye
+    from andon.observer.spread.model import Eye
 
-    pigment = PIGMENTS.get(options.pigment)
+    pigment = EYE_COLOURS.get(options.pigment)
     if pigment is None:
-        pigment = _number(options.pigment, "--pigment", 0, 1.2, "brown, blue or ")
-    glasses, dioptres = GLASSES[one_of(options.glasses, list(GLASSES), "--glasses")]
+        names = f"{', '.join(EYE_COLOURS)} or "
+        pigment = _number(options.pigment, "--pigment", 0, 1.2, names)
+    glasses, dioptres = WORN[GLASSES[one_of(options.glasses, list(GLASSES), "--glasses")]]
     if options.pupil != "auto":
         pupil = _number(options.pupil, "--pupil", 1, 10, "auto or ")
     elif level_cd_m2 is None:
         pupil = Eye().pupil_mm
     else:
         pupil = float(watson_yellott_mm(level_cd_m2, age_years=age))
-    # CIE 191:2010: mesopic from 0.005 to 5 cd/m².
-    adaptation = "mesopic"
-    if level_cd_m2 is not None:
-        adaptation = "photopic" if level_cd_m2 >= 5 else adaptation
-        adaptation = "scotopic" if level_cd_m2 < 0.005 else adaptation
+    adaptation = Eye().adaptation if level_cd_m2 is None else adaptation_of(level_cd_m2)
     mist = _finite(options.mist, "--mist")
-    return Eye(age, pigment, pupil, glasses, dioptres, mist, cast("Adaptation", adaptation))
+    return Eye(age, pigment, pupil, glasses, dioptres, mist, adaptation)
 
 
 def model_of(name: str) -> str:

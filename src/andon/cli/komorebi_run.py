@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 __all__ = ["run"]
 
+# Size of the picture of a list of gaps.
+LISTED_PX = (960, 540)
+
 
 def run(options: KomorebiOptions) -> None:
     """Reads, draws, writes. Raises `InputError` before anything is drawn."""
@@ -31,7 +34,8 @@ def run(options: KomorebiOptions) -> None:
     seen = _seen(options, canopy)
     scale = exposure_of(options.exposure)
     if scale is None:
-        scale = seen.units_per_cd_m2
+        # The sky between the leaves is just white.
+        scale = 1 / max(canopy.sky_cd_m2, 1e-30)
     _tell(seen.komorebi, scale)
     height, width = canopy.view.shape
 
@@ -74,7 +78,21 @@ def _of_glare(options: KomorebiOptions) -> GlareOptions:
     )
 
 
+def _listed(options: KomorebiOptions) -> Canopy:
+    """Of a list, which has neither pixels nor leaves."""
+    from andon.files.gaps import read_gap_list
+    from andon.glare.calibration import DEFAULT_HFOV_DEGREES, projected
+    from andon.glare.komorebi import canopy_of_list
+
+    hfov = DEFAULT_HFOV_DEGREES if options.hfov_degrees is None else options.hfov_degrees
+    view = projected("pinhole", hfov, *LISTED_PX)
+    assert view is not None
+    return canopy_of_list(read_gap_list(options.leaves), view, most=options.gaps or 500)
+
+
 def _canopy(options: KomorebiOptions) -> Canopy:
+    if options.leaves.suffix.lower() in (".csv", ".json"):
+        return _listed(options)
     from andon.files.pictures import read_picture
     from andon.glare.calibration import calibrated
     from andon.glare.cleaning import cleaned

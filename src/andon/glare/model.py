@@ -9,7 +9,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,10 +51,10 @@ class Outline:
             (first + 1) % count
         ]
 
-    @property
+    @cached_property
     def solid_angle_sr(self) -> float:
         """Of the inside: the mean over φ of 2π(1 − cos θ0)."""
-        phi = (np.arange(720) + 0.5) * (np.pi / 360)
+        phi = (np.arange(720, dtype=np.float64) + 0.5) * (np.pi / 360)
         return float(np.mean(2 * np.pi * (1 - np.cos(self.radius(phi)))))
 
 
@@ -95,3 +96,8 @@ class Source:
     def luminance_cd_m2(self) -> Float:
         """(3,) mean over the outline."""
         return self.illuminance_lux / self.outline.solid_angle_sr
+
+    def rounded(self) -> Source:
+        """The same with a circle of the same solid angle as outline."""
+        radius = 2 * np.arcsin(np.sqrt(self.outline.solid_angle_sr / (4 * np.pi)))
+        return replace(self, outline=Outline(np.array([radius])))

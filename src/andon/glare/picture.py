@@ -67,6 +67,13 @@ class GlareResult:
     photometry: Photometry
     pixels: Cleaned
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is wrong with the pixels and the sources, a line each."""
+        from andon.glare.report import warnings_of
+
+        return warnings_of(self)
+
     def report(self, *, map_file: str | None = None, warnings: tuple[str, ...] = ()) -> Any:
         """The numbers as JSON holds them; see `andon.glare.report`."""
         from andon.glare.report import report

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from andon.glare.model import Source
     from andon.glare.picture import GlareResult
 
-__all__ = ["report"]
+__all__ = ["report", "warnings_of"]
 
 DIGITS = 6
 
@@ -75,7 +75,7 @@ def report(
             "source_threshold_cd_m2": rounded(found.threshold_cd_m2),
         },
         "validity": {name: asdict(value) for name, value in numbers.validity.items()},
-        "warnings": [*warnings, *_warnings(result)],
+        "warnings": [*warnings, *result.warnings],
     }
 
 
@@ -130,7 +130,8 @@ def _model(result: GlareResult) -> dict[str, Any]:
     }
 
 
-def _warnings(result: GlareResult) -> list[str]:
+def warnings_of(result: GlareResult, /) -> tuple[str, ...]:
+    """What is wrong with the pixels and sources of a picture, a line each."""
     lines: list[str] = []
     pixels = result.pixels
     for count, what in (
@@ -151,6 +152,4 @@ def _warnings(result: GlareResult) -> list[str]:
             f"{result.found.left_out} weaker bright regions are not listed; they have "
             f"{result.found.left_out_share:.1%} of the light of all"
         )
-    if result.photometry == "relative":
-        lines.append("the picture is not calibrated: all numbers are relative")
-    return lines
+    return tuple(lines)

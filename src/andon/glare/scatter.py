@@ -44,8 +44,9 @@ class Scatter:
 
     Attributes
     ----------
-    picture, veil : (H, W, 3); picture = (1 − k)·light + veil.
-    share : k, the mean over the light of the picture of what leaves its pixel.
+    picture, veil : (H, W, 3); picture = (1 − k)·light + veil. Veil holds what is scattered by less
+        than a pixel, too, so that k does not depend on the size of pixels.
+    share : k, the mean over the light of the picture.
     engine : ``gpu`` or ``reference``.
     """
 
@@ -58,23 +59,30 @@ class Scatter:
 def scatter_all(light: Float, view: View, kernel: Kernel, engine: EngineName, /) -> Scatter:
     """Scatters all light (H, W, 3), finite and ≥ 0, of a picture of `view`."""
     plan = plan_whole(view, kernel)
-    on_gpu = engine == "gpu" or (engine == "auto" and _has_gpu())
-    spread = _veil_on_gpu(light, plan) if on_gpu else veil(light, plan)
-    return _summed(light, spread, resolved(plan), view, "gpu" if on_gpu else "reference")
+    leaves = resolved(plan)
+    share = np.maximum(leaves, kernel.share)
+    if engine == "gpu" or (engine == "auto" and _has_gpu()):
+        return _summed(light, _glare_on_gpu(light, plan), share, view, kernel, "gpu")
+    glare = veil(light, plan) + (share - leaves)[..., None] * light
+    return _summed(light, glare, share, view, kernel, "reference")
 
 
 def scatter_sources(light: Float, view: View, kernel: Kernel, found: FoundSources, /) -> Scatter:
     """Scatters the light of the sources `found` in (H, W, 3); all other light stays."""
     settings = PerSource(least_cd_m2=UNSEEN * found.ambient_cd_m2)
     spread = veil_of_sources(found.simplified(), view, kernel, settings=settings)
-    return _summed(light, spread, kernel.share * (found.labels > 0), view, "reference")
+    share = kernel.share * (found.labels > 0)
+    return _summed(light, spread, share, view, kernel, "reference")
 
 
-def _summed(light: Float, spread: Float, share: Float, view: View, engine: str) -> Scatter:
+def _summed(
+    light: Float, glare: Float, share: Float, view: View, kernel: Kernel, engine: str
+) -> Scatter:
+    """`glare` (H, W, 3) is added, `share` (H, W) of each pixel's light taken."""
     weight = light.sum(axis=-1) * view.solid_angles()
     total = float(weight.sum())
-    mean = float((share * weight).sum() / total) if total > 0 else float(share.mean())
-    return Scatter((1 - share[..., None]) * light + spread, spread, mean, engine)
+    mean = float((share * weight).sum() / total) if total > 0 else kernel.share
+    return Scatter((1 - share[..., None]) * light + glare, glare, mean, engine)
 
 
 def _has_gpu() -> bool:
@@ -83,7 +91,8 @@ def _has_gpu() -> bool:
     return adapter_summary() is not None
 
 
-def _veil_on_gpu(light: Float, plan: WholePlan) -> Float:
+def _glare_on_gpu(light: Float, plan: WholePlan) -> Float:
+    """(H, W, 3) what is added."""
     from andon.glare.whole_picture.stage import WholePictureStage
     from andon.gpu.device import open_gpu
     from andon.gpu.textures import make_texture

@@ -15,7 +15,17 @@ from numpy.typing import ArrayLike, NDArray
 from andon.errors import InputError
 from andon.glare.model import Outline
 
-__all__ = ["circle", "cylinder", "ellipse", "hemisphere", "pear", "polygon", "table"]
+__all__ = [
+    "circle",
+    "cylinder",
+    "ellipse",
+    "hemisphere",
+    "pear",
+    "polygon",
+    "spherical_hull",
+    "spherical_outline",
+    "table",
+]
 
 Float = NDArray[np.float64]
 
@@ -101,6 +111,40 @@ def polygon(corners_radians: ArrayLike, name: str = "polygon", /) -> Outline:
     width = np.ptp(corners, axis=0)
     count = _count(float(width.max()), float(width.min()))
     return Outline(_reach(about, ahead, np.arange(count) * (2 * np.pi / count)), name)
+
+
+def spherical_outline(corners: Float, /) -> Outline:
+    """A polygon of great circles through unit vectors (k, 3) of (right, down, direction).
+
+    In order; of what is not seen from the direction the farthest edge counts. Within 90°.
+    """
+    flat = corners[:, :2] / corners[:, 2:]  # great circles are straight in the gnomonic plane
+    width = np.ptp(flat, axis=0)
+    count = _count(float(width.max()), max(float(width.min()), 1e-9))
+    phi = np.arange(count) * (2 * np.pi / count)
+    reach = np.arctan(_reach(flat, np.roll(flat, -1, axis=0), phi))
+    # A direction from which the polygon is all to one side sees nothing to the other.
+    return Outline(np.maximum(reach, 1e-3 * reach.max()), "polygon")
+
+
+def spherical_hull(points: Float, /) -> Outline:
+    """Outline of the hull of unit vectors (n, 3) of (right, down, direction), within 90°."""
+    flat = points[:, :2] / points[:, 2:]
+    flat = np.unique(flat, axis=0)
+    chains: list[list[Float]] = []
+    for run in (flat, flat[::-1]):  # Andrew's monotone chain
+        chain: list[Float] = []
+        for point in run:
+            while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 0:
+                chain.pop()
+            chain.append(point)
+        chains.append(chain[:-1])
+    corners = np.array(chains[0] + chains[1])
+    return spherical_outline(np.concatenate([corners, np.ones((len(corners), 1))], axis=1))
+
+
+def _turn(a: Float, b: Float, c: Float) -> float:
+    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
 
 def _reach(start: Float, end: Float, phi: Float) -> Float:

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.glare.gate import gate
+from andon.glare.around import around
+from andon.glare.gate import HIGHLIGHT_CONTRAST
 from andon.glare.kernel import Kernel
-from andon.glare.needles import NeedleModel, needles_of
+from andon.glare.needles import NeedleModel
 from andon.glare.needles.model import Which
 from andon.glare.needles.reference import draw
-from andon.glare.per_source.halos import halo_table
 from andon.glare.per_source.reference import halos_of_sources
 from andon.glare.sources.find import FoundSources
 from andon.observer.spread.model import Eye
@@ -57,27 +57,23 @@ def stars_of(
 ) -> Stars:
     """What `eye` sees around the strongest sources of a picture, besides their veil."""
     strongest = found.simplified()[:MOST_STARS]
-    ambient = found.ambient_cd_m2
+    seen = around(
+        strongest,
+        photometric(found.luminance_cd_m2[: len(strongest)]),
+        found.ambient_cd_m2,
+        eye,
+        kernel,
+        seed=seed,
+        which=which,
+        needles=NeedleModel() if model is None else model,
+        contrast=HIGHLIGHT_CONTRAST,
+    )
+    stars = [star for star in seen.needles if len(star)]
+    added = draw(stars, view)
+    if seen.halo_weights.any():
+        weights = seen.halo_weights.tolist()
+        added += halos_of_sources(strongest, view, kernel, kernel.spread, weights=weights)
     shares = np.zeros((len(found.sources) + 1, 3))
-    stars = [
-        needles_of(source, eye, ambient, seed, which=which, model=model) for source in strongest
-    ]
-    for number, star in enumerate(stars):
-        shares[number + 1] = star.share
-    seen = [star for star in stars if len(star)]
-    added = draw(seen, view)
-    weights = gate(photometric(found.luminance_cd_m2[: len(strongest)]), ambient)
-    has_halo = kernel.spread.halo_per_sr is not None and len(strongest) > 0
-    if has_halo:
-        added += halos_of_sources(strongest, view, kernel, kernel.spread, weights=weights.tolist())
-        shares[1 : len(strongest) + 1] += weights[:, None] * _halo_share(kernel)
-    halos = int(np.count_nonzero(weights)) if has_halo else 0
-    return Stars(added, shares[found.labels], halos, len(seen))
-
-
-def _halo_share(kernel: Kernel) -> Float:
-    """(3,) share of a point's light that its ring holds."""
-    ring = halo_table(kernel.spread)
-    theta = np.linspace(0, ring.end, len(ring.values))
-    weight = 2 * np.pi * np.sin(theta) * (theta[1] - theta[0])
-    return weight @ ring.values
+    shares[1 : len(strongest) + 1] = seen.taken
+    halos = int(np.count_nonzero(seen.halo_weights))
+    return Stars(added, shares[found.labels], halos, len(stars))

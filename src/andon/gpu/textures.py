@@ -55,13 +55,16 @@ class Texture:
 
     def write(self, values: NDArray[Any], layer: int = 0) -> None:
         """Fills a layer with `values` (H, W, channels) or (H, W); cast to the texture's type."""
-        dtype, channels = _FORMATS[self.format]
-        data = np.ascontiguousarray(values.reshape(self.height, self.width, channels), dtype)
+        self.write_rows(values.reshape(self.height, self.width, -1), 0, layer)
+
+    def write_rows(self, values: NDArray[Any], first: int, layer: int = 0) -> None:
+        """Fills rows from `first` on with `values` (rows, W, channels)."""
+        data = np.ascontiguousarray(values, _FORMATS[self.format][0])
         self.gpu.device.queue.write_texture(
-            {"texture": self.handle, "origin": (0, 0, layer)},
+            {"texture": self.handle, "origin": (0, first, layer)},
             data,
-            {"bytes_per_row": data.strides[0], "rows_per_image": self.height},
-            (self.width, self.height, 1),
+            {"bytes_per_row": data.strides[0], "rows_per_image": len(data)},
+            (self.width, len(data), 1),
         )
 
     def read(self, layer: int = 0) -> NDArray[Any]:

@@ -118,7 +118,8 @@ def write_hdr(path: str | Path, values: NDArray[Any], *, view_line: str | None =
         raise MachineError(f"{path}: OpenCV could not encode the Radiance picture")
     # Other readers take the magic word of Radiance's own programs only.
     first = "#?RADIANCE" if view_line is None else f"#?RADIANCE\nVIEW= {view_line}"
-    return write_bytes(path, encoded.tobytes().replace(b"#?RGBE", first.encode("ascii"), 1))
+    rest = encoded.tobytes().partition(b"\n")[2]
+    return write_bytes(path, first.encode("ascii") + b"\n" + rest)
 
 
 def write_npy(path: str | Path, values: NDArray[Any]) -> Path:

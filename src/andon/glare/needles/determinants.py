@@ -39,13 +39,11 @@ from andon.glare.needles.frame import elongation, eye_axes, lobed, outline_at
 from andon.glare.needles.model import NeedleModel, Needles, Which
 from andon.glare.needles.pattern import pattern_of
 from andon.observer.spread.model import Eye
+from andon.quantities import photometric
 
 __all__ = ["needles_of", "number_of", "reach_factor"]
 
 Float = NDArray[np.float64]
-
-# Rec.709: the photometric value of a triple.
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 def number_of(
@@ -55,7 +53,7 @@ def number_of(
 
     `gaussian` is the eye's g. Source: the glare paper, equations 5 and 6, as reconstructed above.
     """
-    light = float(source.illuminance_lux @ LUMINANCE) / model.illuminance_lux
+    light = float(photometric(source.illuminance_lux)) / model.illuminance_lux
     size = 1 + source.outline.solid_angle_sr / model.size_sr
     glasses = 1.0
     if eye.glasses == "spectacles":
@@ -66,7 +64,7 @@ def number_of(
 
 def reach_factor(source: Source, eye: Eye, ambient_cd_m2: float, model: NeedleModel) -> float:
     """Length of a needle of |g| = 1, in len0."""
-    light = float(source.illuminance_lux @ LUMINANCE) / model.illuminance_lux
+    light = float(photometric(source.illuminance_lux)) / model.illuminance_lux
     return (light / _veiled(eye, ambient_cd_m2, model)) ** (1 / model.power) * _open(eye, model)
 
 
@@ -102,7 +100,7 @@ def needles_of(
         raise InputError(f"must be ≥ 0 cd/m², got {ambient_cd_m2:g}", field="ambient_cd_m2")
     model = model or NeedleModel()
     pattern = pattern_of(seed, which, model.most)
-    seen = gate(source.luminance_cd_m2 @ LUMINANCE, ambient_cd_m2, contrast=model.contrast)
+    seen = gate(photometric(source.luminance_cd_m2), ambient_cd_m2, contrast=model.contrast)
     number = number_of(source, eye, ambient_cd_m2, pattern.number, model)
     weight = np.clip(number - np.arange(model.most), 0, 1) * float(seen)
     kept = weight > 0

@@ -34,7 +34,14 @@ def eye_axes(direction: Float, /) -> tuple[Float, Float]:
 
 def outline_at(source: Source, azimuth_radians: Float, /) -> Float:
     """(...) θ0 of the outline at azimuths (...) of the eye's frame."""
+    if _is_circle(source):
+        return np.full(np.shape(azimuth_radians), source.outline.radii_radians[0])
     return source.outline.radius(azimuth_radians - _offset(source))
+
+
+def _is_circle(source: Source) -> bool:
+    """Most sources are, and need no quadrature."""
+    return len(source.outline.radii_radians) == 1
 
 
 def _offset(source: Source) -> float:
@@ -58,6 +65,8 @@ def elongation(source: Source, /) -> Elongation:
     ``(λ₁ − λ₂)/(λ₁ + λ₂)`` of their eigenvalues: (a² − b²)/(a² + b²) for an ellipse. The tangent
     plane stands for the sphere.
     """
+    if _is_circle(source):
+        return Elongation(0.0, 0.0)
     phi = (np.arange(STEPS, dtype=np.float64) + 0.5) * (2 * np.pi / STEPS)
     radius = outline_at(source, phi)
     unit = np.stack([np.cos(phi), np.sin(phi)])
@@ -78,6 +87,8 @@ def lobed(turn: Float, shape: Elongation, lobe_radians: float, /) -> Float:
     circle without a jump as a source turns from a disc into an ellipse, or the ellipse turns.
     """
     azimuth = 2 * np.pi * turn
+    if shape.degree == 0:
+        return azimuth
     place = (azimuth - shape.axis_radians + np.pi / 2) / np.pi
     half = np.floor(place)
     x = np.linspace(-np.pi / 2, np.pi / 2, STEPS + 1)

@@ -21,7 +21,7 @@ __all__ = ["Pattern", "pattern_of"]
 Float = NDArray[np.float64]
 _EYES: dict[Which, int] = {"mono": 0, "left": 1, "right": 2}
 # Standard deviation of the logarithm of widths and of strengths.
-WIDTH_SPREAD, STRENGTH_SPREAD = 0.35, 0.5
+WIDTH_SPREAD, STRENGTH_SPREAD = 0.35, 0.4
 # Of |g|: what is shorter would be a dot at the outline.
 SHORTEST = 0.05
 

@@ -33,6 +33,7 @@ class PerSource:
     bloom: Bloom | None = None
     core: bool | None = None
     least_cd_m2: float = 0.0
+    bloom_drawn: bool = True
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.least_cd_m2) and self.least_cd_m2 >= 0):

@@ -55,7 +55,8 @@ def veil_of_sources(
     total = np.zeros((*view.shape, 3))
     for source, share in zip(sources, shares, strict=True):
         table = table_of(kernel, source.outline, core=core, bloom=settings.bloom)
-        total += _veil(source, view, kernel, table, settings.least_cd_m2)
+        if settings.bloom_drawn:
+            total += _veil(source, view, kernel, table, settings.least_cd_m2)
         if ring is not None and share > 0:
             total += share * _ring(source, view, table, ring)
     return total

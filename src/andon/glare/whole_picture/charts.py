@@ -33,6 +33,8 @@ SINGLE_REACH_DEGREES = 130.0
 PAIR_REACH_DEGREES = 125.0
 # … and is read this far beyond the horizon, where one passes into the other.
 BLEND_DEGREES = 6.0
+# No scale is smaller: that of directions within 0.1° of straight behind.
+LEAST_SCALE = 1e-6
 # Pixels per cell of level 1, and by how much a wide field may be finer or coarser on the axis.
 CELL_PIXELS = 2.0
 FINEST, COARSEST = 0.6, 1.3
@@ -70,7 +72,8 @@ class Chart:
 
     def scale(self, directions: Float, /) -> Float:
         """(...) a in (0, 1]: angle per unit of the chart."""
-        return (1 + directions @ self.chart_from_camera[2]) / 2
+        # Straight behind it is 0, and so is a level there; where its logarithm is taken, all but.
+        return np.maximum((1 + directions @ self.chart_from_camera[2]) / 2, LEAST_SCALE)
 
     def level_size(self, level: int, /) -> tuple[int, int]:
         """(rows, columns) of level ≥ 1 without margins."""

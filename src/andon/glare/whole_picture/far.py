@@ -32,6 +32,8 @@ MODEL_DEGREES = (20.0, 40.0)
 # Two charts pass light on to each other over a band that is wide against coarse cells: sums over
 # cells then have all of it (0.3 % at ±20°).
 LIGHT_BLEND_DEGREES = 20.0
+# The scale of light that lies opposite to a chart's axis, where it has none.
+LEAST_SCALE = 0.15
 # Nodes of the table of the kernel, evenly over the chord 0…2 and over ln scale.
 CHORDS, SCALES = 513, 17
 
@@ -85,6 +87,7 @@ def plan_far(
     cells = _cells(charts, level)
     lit, read = cells.share > 0, cells.read
     sources = cells.directions[lit]
+    own = np.choose(cells.indices[:, 0], [c.scale(cells.directions) for c in charts])
     width = charts[0].cell * 2 ** (level - 1)
     table = _Table(kernel, mixture, ladder, width)
     parts: list[Float] = []
@@ -94,13 +97,18 @@ def plan_far(
         limit = np.array(chart.array_shape(1)[::-1]) - 1
         covered = ((place >= 0) & (place <= limit)).all(-1)
         chord = np.linalg.norm(to[:, None] - sources, axis=-1)
-        parts.append(table.matrix(chord, chart.scale(to), chart.scale(sources), covered))
-    scales = np.geomspace(min(c.scale(cells.directions).min() for c in charts), 1, SCALES)
+        levels = np.sqrt(chart.scale(to)[:, None] * np.maximum(chart.scale(sources), LEAST_SCALE))
+        ends = (chart.scale(to)[:, None] ** 2 + own[lit] ** 2) / 2
+        parts.append(table.matrix(chord, levels, ends, covered))
+    matrix = np.concatenate(parts)
+    behind = cells.directions[read] @ sources.T < 0
+    matrix = _not_negative(matrix, behind, (cells.share * own**2)[read])
+    scales = np.geomspace(own.min(), 1, SCALES)
     return Far(
         level,
         cells.indices[lit],
         cells.indices[read],
-        np.concatenate(parts) * cells.share[lit] * width**2,
+        matrix * cells.share[lit] * width**2,
         scales,
         table.shares(scales),
     )
@@ -125,9 +133,22 @@ def _cells(charts: tuple[Chart, ...], level: int) -> _Cells:
     return _Cells(indices, directions, share, read)
 
 
+def _not_negative(matrix: Float, behind: NDArray[np.bool_], areas: Float) -> Float:
+    """`matrix` (m, n) with nothing below 0 `behind` (m, n) a source, and no more light there.
+
+    Where the model fades, what the splines spread has been taken off, which may be too much.
+    """
+    lifted = np.maximum(matrix, 0)
+    before, after = (areas @ np.where(behind, part, 0.0) for part in (matrix, lifted))
+    factor = np.divide(before, after, where=(after > 0) & (before > 0), out=np.zeros_like(after))
+    return np.where(behind, lifted * factor, matrix)
+
+
 @dataclass(frozen=True)
 class _Table:
     """The far kernel over the chord and the scales a and b of both ends, in sr⁻¹.
+
+    Levels see both in one chart; cells are as wide as they are in their own.
 
     Both splines spread what the matrix makes, by v = `SPLINES_VARIANCE`·(a² + b²)/2 cells²; so
     every bump is narrower by v, and what is not made of bumps less by v/2 of its Laplacian.
@@ -138,17 +159,16 @@ class _Table:
     ladder: Ladder
     width: float
 
-    def matrix(self, chord: Float, a: Float, b: Float, covered: NDArray[np.bool_]) -> Float:
-        """(m, n) of chords (m, n), scales (m,) and (n,); `covered` (n,) is what levels have."""
-        product = np.sqrt(a[:, None] * b)
-        ratio = (a[:, None] ** 2 + b**2) / (2 * product**2)
+    def matrix(self, chord: Float, scale: Float, ends: Float, covered: NDArray[np.bool_]) -> Float:
+        """(m, n) of chords (m, n), √(ab) and (a² + b²)/2; `covered` (n,) is what levels have."""
         chords = np.linspace(0, 2, CHORDS)
-        scales = np.geomspace(product.min() * (1 - 1e-9), product.max() * (1 + 1e-9), SCALES)
+        scales = np.geomspace(scale.min() * (1 - 1e-9), scale.max() * (1 + 1e-9), SCALES)
         x = chord / 2 * (CHORDS - 1)
-        y = np.log(product / scales[0]) / np.log(scales[-1] / scales[0]) * (SCALES - 1)
+        y = np.log(scale / scales[0]) / np.log(scales[-1] / scales[0]) * (SCALES - 1)
         # All but linear in v.
         even, levels = self._tables(chords, scales, 1.0)
         uneven, _ = self._tables(chords, scales, 1.25)
+        ratio = ends / scale**2
         value = _bilinear(even, y, x) + (ratio - 1) / 0.25 * _bilinear(uneven - even, y, x)
         return value + np.where(covered, 0.0, _bilinear(levels, y, x))
 

@@ -2,8 +2,8 @@
 
 A *rung* is a filter of a level: rung k has σ_k = a·s_k, ``s_k = sigma_cells·2^(level−1)·cell``
 (and what blocks of pixels add, which tells only in the first two), and takes
-``W(σ_k)·χ(s_k)·(ln s_{k+1} − ln s_{k−1})/2`` of a point's light. χ goes from 1 to 0 over a few coarse
-cells, whose angle goes with a as well; the rest of the mixture is the far part's.
+``W(σ_k)·χ(s_k)·(ln s_{k+1} − ln s_{k−1})/2`` of a point's light. χ goes from 1 to 0 over a few
+coarse cells, whose angle goes with a as well; the rest of the mixture is the far part's.
 """
 
 from __future__ import annotations
@@ -79,9 +79,12 @@ class Ladder:
 
     def share_of(self, rung: Rung, scale: Float, /) -> Float:
         """(...) share of a point's light that a rung spreads where the chart's scale is a."""
-        blocks = np.interp(scale, self.scales, self.blocks)
-        log_sigma = np.log((rung.sigma * scale) ** 2 + blocks) / 2
+        log_sigma = np.log(self._square(rung, scale)) / 2
         return rung.width * np.interp(log_sigma, self.mixture.log_sigma, self.mixture.share)
+
+    def _square(self, rung: Rung, scale: Float) -> Float:
+        """(...) σ² of a rung in radians²."""
+        return (rung.sigma * scale) ** 2 + np.interp(scale, self.scales, self.blocks)
 
     def near(self, scale: Float, /) -> Float:
         """(..., n) χ at the mixture's σ where the chart's scale is a (...)."""
@@ -94,7 +97,7 @@ class Ladder:
         """
         total = np.zeros(np.broadcast_shapes(np.shape(chord), np.shape(scale)))
         for rung in self.rungs:
-            square = (rung.sigma * scale) ** 2
+            square = self._square(rung, scale)
             sigma = np.sqrt(np.maximum(square - less, square / 2))
             total += self.share_of(rung, scale) * bump(chord, sigma)
         return total

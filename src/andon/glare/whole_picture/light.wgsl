@@ -1,9 +1,9 @@
-// Light on its way in: pixels → blocks → coarser and coarser cells. Alpha of cells is √w.
+// Light on its way in: pixels → halves → blocks → coarser and coarser cells. Alpha of cells is √w.
 
 //!import andon/glare/whole_picture/numbers.wgsl
 
 @group(0) @binding(0) var source: texture_2d<f32>;
-// Of blocks: solid angle of a pixel by area of a cell. Of cells: √w.
+// Of blocks, the last of the halvings: solid angle of a pixel by area of a cell. Of cells: √w.
 @group(0) @binding(1) var factors: texture_2d<f32>;
 
 const LIMIT: f32 = 65504.0;
@@ -25,16 +25,24 @@ fn row_of_four(first: vec2i, end: vec2i) -> vec3f {
 }
 
 // Sum over a block, [1 3 3 1]/4 along each axis. Block 0 is the one beyond the border.
-@fragment fn reduce_blocks(@builtin(position) texel: vec4f) -> @location(0) vec4f {
+fn halved(place: vec2i) -> vec3f {
   let end = vec2i(textureDimensions(source)) - 1;
-  let place = vec2i(texel.xy);
   let first = 2 * place - 3;
   var sum = vec3f(0.0);
   for (var j = 0; j < 4; j++) {
     let share = select(1.0, 3.0, j == 1 || j == 2) * weight_of_row(first.y + j);
     sum += share * row_of_four(first + vec2i(0, j), end);
   }
-  return vec4f(sum / 16.0 * textureLoad(factors, place, 0).x, 0.0);
+  return sum / 16.0;
+}
+
+@fragment fn halve(@builtin(position) texel: vec4f) -> @location(0) vec4f {
+  return vec4f(halved(vec2i(texel.xy)), 0.0);
+}
+
+@fragment fn reduce_blocks(@builtin(position) texel: vec4f) -> @location(0) vec4f {
+  let place = vec2i(texel.xy);
+  return vec4f(halved(place) * textureLoad(factors, place, 0).x, 0.0);
 }
 
 // Mean over a cell, [1 3 3 1]/8 along each axis.

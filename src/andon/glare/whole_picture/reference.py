@@ -25,8 +25,9 @@ class Scattered:
     Attributes
     ----------
     picture : (H, W, 3) cd/m², (1 − k)·L + glare.
-    glare : (H, W, 3) cd/m², what is added: the veil, and of what a pixel scatters within itself.
-    share : (H, W) k of each pixel: that of the kernel, with its core where pixels resolve it.
+    glare : (H, W, 3) cd/m², the veil: what is added.
+    share : (H, W) k of each pixel: the share of its light that leaves it. Less than the kernel's
+        where pixels are coarse and keep much in themselves, more by the core where they are fine.
     """
 
     picture: Float
@@ -41,9 +42,7 @@ def scattered(luminance: NDArray[Any], plan: WholePlan, /) -> Scattered:
     """
     light = np.asarray(luminance, np.float64)
     glare = veil(light, plan)
-    leaves = resolved(plan)
-    share = np.maximum(leaves, plan.kernel.share)
-    glare += (share - leaves)[..., None] * light
+    share = resolved(plan)
     return Scattered((1 - share[..., None]) * light + glare, glare, share)
 
 

@@ -45,6 +45,13 @@ fn read(cells: texture_2d<f32>, at: vec4f) -> vec4f {
   return textureSampleLevel(blocks, linear, place, 0.0);
 }
 
+// What is added alone.
+@fragment fn added(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+  let place = (0.5 * pixel.xy + 1.0) / vec2f(textureDimensions(blocks));
+  return vec4f(textureSampleLevel(blocks, linear, place, 0.0).xyz, 0.0);
+}
+
+// NaN and negative light compare false and become 0; infinity becomes the limit.
 @fragment fn copied(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
   let light = textureLoad(picture, vec2i(pixel.xy), 0);
   let usable = select(vec3f(0.0), min(light.xyz, vec3f(65504.0)), light.xyz > vec3f(0.0));

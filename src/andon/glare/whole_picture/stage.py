@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,8 @@ __all__ = ["WholePictureStage"]
 # Light and veil between passes: half floats are cut, not rounded, by some drivers. The last step
 # alone has half floats, since only these can be interpolated by all adapters.
 BETWEEN, SMOOTH = "rgba32float", "rgba16float"
+# Texels of a half whose four pixels are not all of the picture.
+BORDER = 2
 FOLDER = "andon/glare/whole_picture"
 NUMBERS = f"{FOLDER}/numbers.wgsl"
 Bindings = dict[int, tuple[str, Any]]
@@ -36,14 +38,43 @@ STAYS = {
 
 @dataclass(frozen=True)
 class _Step:
-    """A pass, what it draws into, and the texels that each of its own reads."""
+    """A pass, what it draws into, and the texels that each of its own reads.
+
+    `inside` draws instead where it is not within `BORDER` texels of the border.
+    """
 
     drawn: FullscreenPass
     target: Texture
     taps: int
+    inside: FullscreenPass | None = None
 
     def encode(self, encoder: Any) -> None:
-        self.drawn.encode(encoder, [self.target.view])
+        if self.inside is None:
+            self.drawn.encode(encoder, [self.target.view])
+            return
+        width, height = self.target.width, self.target.height
+        across, down = width - 2 * BORDER, height - 2 * BORDER
+        render = encoder.begin_render_pass(
+            label=self.inside.label, color_attachments=[color_attachment(self.target.view)]
+        )
+        for step, areas in (
+            (self.inside, [(BORDER, BORDER, across, down)]),
+            (
+                self.drawn,
+                [
+                    (0, 0, width, BORDER),
+                    (0, height - BORDER, width, BORDER),
+                    (0, BORDER, BORDER, down),
+                    (width - BORDER, BORDER, BORDER, down),
+                ],
+            ),
+        ):
+            render.set_pipeline(step.pipeline)
+            render.set_bind_group(0, step.groups[0].group)
+            for area in areas:
+                render.set_scissor_rect(*area)
+                render.draw(3)
+        render.end()
 
 
 class WholePictureStage:
@@ -51,22 +82,36 @@ class WholePictureStage:
 
     `source` is rgba16float or rgba32float, in it NaN and negative values count as 0 and what is
     above 65504 as that; `target` is rgba16float and gets the source's alpha.
+
+    finite : the source is known to hold no NaN, no infinity and nothing negative, so that it need
+        not be looked at pixel by pixel: half the time.
     """
 
-    def __init__(self, gpu: Gpu, source: Texture, target: Texture, plan: WholePlan) -> None:
+    def __init__(
+        self,
+        gpu: Gpu,
+        source: Texture,
+        target: Texture,
+        plan: WholePlan,
+        /,
+        *,
+        finite: bool = False,
+    ) -> None:
         for name, texture in (("source", source), ("target", target)):
             if (texture.height, texture.width) != plan.view.shape:
                 size, view = f"{texture.width}×{texture.height}", plan.view
                 raise InputError(
                     f"must be {view.width}×{view.height} px, got {size}", field=f"glare.{name}"
                 )
-        self.gpu, self.plan, self._target = gpu, plan, target
-        rows, columns = block_shape(plan.view)
-        self._blocks = [make_texture(gpu, BETWEEN, columns, rows) for _ in plan.charts]
-        self._veil = make_texture(gpu, SMOOTH, columns, rows, label="veil of blocks")
+        self.gpu, self.plan, self._source, self._target = gpu, plan, source, target
+        # Only half floats can be sampled by all adapters.
+        self._trusted = finite and source.format == SMOOTH
+        self._sampler = gpu.device.create_sampler(mag_filter="linear", min_filter="linear")
+        self._shapes = _halvings(plan)
+        self._veils = [make_texture(gpu, SMOOTH, *shape[::-1]) for shape in self._shapes]
         self._lights = [_levels(gpu, chart, plan.levels) for chart in plan.charts]
-        self._steps = [*self._light(source), *self._far(), *self._spread(), self._seen()]
-        self._copy, self._out, self._alone = self._last(source)
+        self._steps = [*self._light(), *self._far(), *self._spread(), *self._seen()]
+        self._copy, self._out, self._alone = self._last()
 
     def _pass(
         self,
@@ -89,22 +134,43 @@ class WholePictureStage:
         texture.write(values)
         return texture.view
 
-    def _light(self, source: Texture) -> list[_Step]:
+    def _light(self) -> list[_Step]:
         """Pixels → blocks → cells of all levels."""
         steps: list[_Step] = []
-        for chart, blocks, levels in zip(self.plan.charts, self._blocks, self._lights, strict=True):
+        picture = self._source
+        for shape in self._shapes[:-1]:
+            half = make_texture(self.gpu, BETWEEN, *shape[::-1])
+            steps.append(self._halved("halve", picture, half, picture.view))
+            picture = half
+        for chart, levels in zip(self.plan.charts, self._lights, strict=True):
+            blocks = make_texture(self.gpu, BETWEEN, *self._shapes[-1][::-1])
+            factors = self._filled(tables.block_factors(self.plan, chart), "r32float")
+            steps.append(self._halved("reduce_blocks", picture, blocks, factors))
             roots = [
                 self._filled(_first_root(self.plan, chart, level), "r32float")
                 for level in range(1, self.plan.levels + 1)
             ]
-            factors = self._filled(tables.block_factors(self.plan, chart), "r32float")
-            inputs = {0: ("float", source.view), 1: ("float", factors)}
-            steps.append(self._pass("light", "reduce_blocks", blocks, inputs, taps=17))
             steps.append(self._gathered(chart, blocks, levels[0], roots[0]))
             for finer, coarser, root in zip(levels, levels[1:], roots[1:], strict=False):
-                inputs = {0: ("float", finer.view), 1: ("float", root)}
+                inputs: Bindings = {0: ("float", finer.view), 1: ("float", root)}
                 steps.append(self._pass("light", "reduced", coarser, inputs, taps=17))
         return steps
+
+    def _halved(self, entry: str, picture: Texture, half: Texture, factors: Any) -> _Step:
+        """A halving; that of the picture itself is sampled where it may be."""
+        inputs: Bindings = {0: ("float", picture.view), 1: ("float", factors)}
+        numbers = _numbers(self.plan, picture=picture is self._source)
+        step = self._pass("light", entry, half, inputs, numbers, 17)
+        large = min(half.width, half.height) > 2 * BORDER
+        flat = self.plan.view.projection != "latlong"
+        if not (self._trusted and picture is self._source and flat and large):
+            return step
+        inputs[0] = ("smooth", picture.view)
+        inputs[2] = ("linear sampler", self._sampler)
+        if entry == "halve":
+            del inputs[1]
+        smooth = self._pass("light_smooth", entry, half, inputs)
+        return replace(step, inside=smooth.drawn)
 
     def _gathered(self, chart: Chart, blocks: Texture, cells: Texture, roots: Any) -> _Step:
         found = tables.windows(self.plan, chart)
@@ -174,33 +240,45 @@ class WholePictureStage:
         steps.append(self._pass("spread", "accumulated", cells, inputs | far, numbers, reads))
         return steps
 
-    def _seen(self) -> _Step:
-        """Cells of level 1 → blocks."""
+    def _seen(self) -> list[_Step]:
+        """Cells of level 1 → blocks → … → halves."""
         inputs: Bindings = {}
         for index, (chart, levels) in enumerate(zip(self.plan.charts, self._lights, strict=True)):
             inputs[2 * index] = ("float", levels[0].view)
             places = self._filled(tables.block_places(self.plan, chart))
             inputs[2 * index + 1] = ("float", places)
         entry = "blocks_seen_by_two" if self.plan.pair else "blocks_seen"
-        return self._pass("seen", entry, self._veil, inputs, taps=10 * len(self.plan.charts))
+        taps = 10 * len(self.plan.charts)
+        steps = [self._pass("seen", entry, self._veils[-1], inputs, taps=taps)]
+        for finer, coarser in zip(self._veils[-2::-1], self._veils[:0:-1], strict=True):
+            steps.append(self._pass("seen", "expand_blocks", finer, self._smooth(coarser), taps=4))
+        return steps
 
-    def _last(self, source: Texture) -> tuple[FullscreenPass, FullscreenPass, FullscreenPass]:
+    def _smooth(self, veil: Texture) -> Bindings:
+        return {4: ("smooth", veil.view), 5: ("linear sampler", self._sampler)}
+
+    def _last(self) -> tuple[FullscreenPass, FullscreenPass, FullscreenPass]:
         """The picture itself; the veil on top of it; the veil alone."""
-        sampler = self.gpu.device.create_sampler(mag_filter="linear", min_filter="linear")
-        smooth = {4: ("smooth", self._veil.view), 5: ("linear sampler", sampler)}
-        veil = [bind_group(self.gpu, smooth, "veil")]
-        picture = [bind_group(self.gpu, {6: ("float", source.view)}, "picture")]
+        veil = [bind_group(self.gpu, self._smooth(self._veils[0]), "veil")]
+        picture = [bind_group(self.gpu, {6: ("float", self._source.view)}, "picture")]
         path, formats = f"{FOLDER}/seen.wgsl", [self._target.format]
         return (
             FullscreenPass(self.gpu, path, "copied", formats, picture),
             FullscreenPass(self.gpu, path, "expand_blocks", formats, veil, blend=STAYS),
-            FullscreenPass(self.gpu, path, "expand_blocks", formats, veil),
+            FullscreenPass(self.gpu, path, "added", formats, veil),
         )
 
     def encode(self, encoder: Any) -> None:
         """Records (1 − k)·L + veil into the target."""
         self._encode_veil(encoder)
-        self._copy.encode(encoder, [self._target.view])
+        if self._trusted:
+            encoder.copy_texture_to_texture(
+                {"texture": self._source.handle},
+                {"texture": self._target.handle},
+                (self._target.width, self._target.height, 1),
+            )
+        else:
+            self._copy.encode(encoder, [self._target.view])
         render = encoder.begin_render_pass(
             label="veil", color_attachments=[color_attachment(self._target.view, load=True)]
         )
@@ -210,10 +288,7 @@ class WholePictureStage:
         render.end()
 
     def encode_glare(self, encoder: Any, texture: Texture) -> None:
-        """Records the veil alone into `texture` (rgba16float, of the view's size).
-
-        Alpha is the share of a pixel's light that stays in it.
-        """
+        """Records the veil alone into `texture` (rgba16float, of the view's size), alpha 0."""
         self._encode_veil(encoder)
         self._alone.encode(encoder, [texture.view])
 
@@ -230,6 +305,15 @@ class WholePictureStage:
     def _encode_veil(self, encoder: Any) -> None:
         for step in self._steps:
             step.encode(encoder)
+
+
+def _halvings(plan: WholePlan) -> list[tuple[int, int]]:
+    """Shapes of the halves of the picture, the last that of the blocks."""
+    shapes = [plan.view.shape]
+    while not shapes[1:] or shapes[-1] != block_shape(plan.view):
+        height, width = shapes[-1]
+        shapes.append((-(-height // 2) + 2, -(-width // 2) + 2))
+    return shapes[1:]
 
 
 def _levels(gpu: Gpu, chart: Chart, count: int) -> list[Texture]:
@@ -256,10 +340,16 @@ def _first_root(plan: WholePlan, chart: Chart, level: int) -> NDArray[np.float64
     return _root(plan, chart, rungs[0]) if rungs else np.zeros(chart.array_shape(level))
 
 
-def _numbers(plan: WholePlan, level: int = 1, window: tuple[int, int] | None = None) -> str:
+def _numbers(
+    plan: WholePlan,
+    level: int = 1,
+    window: tuple[int, int] | None = None,
+    *,
+    picture: bool = False,
+) -> str:
     """The constants that stand in for numbers.wgsl."""
     row = "1.0"
-    if plan.view.projection == "latlong":
+    if picture and plan.view.projection == "latlong":
         row = f"sin((f32(row) + 0.5) * {np.pi / plan.view.height:.9g}f)"
     columns, rows = window or (1, 1)
     rungs = _rungs(plan, level)

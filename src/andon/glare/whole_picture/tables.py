@@ -20,6 +20,8 @@ __all__ = ["STRIP", "Windows", "block_factors", "block_places", "far_tables", "w
 
 Float = NDArray[np.float64]
 
+# Pixels of the picture that a block is wide.
+BLOCK_PIXELS = 2
 # Cells of the spline to each side, and how far off, in cells, a flat window may be.
 SUPPORT, FLAT = 1.5, 0.02
 # Windows of more blocks than this are looked through one by one, each for as many as it needs.
@@ -48,9 +50,12 @@ class Windows:
 def block_view(view: View) -> View:
     """The pinhole or fisheye view whose pixels are the blocks of `view`, its border included."""
     rows, columns = block_shape(view)
-    middle = ((view.cx - 0.5) / 2 + 1, (view.cy - 0.5) / 2 + 1)
-    sizes = {"width": columns, "height": rows, "fx": view.fx / 2, "fy": view.fy / 2}
-    return replace(view, cx=middle[0], cy=middle[1], distortion=(), **sizes)
+    # Pixels a block; the array of a half has its index i at pixel 2i − 1.5 of the finer.
+    across = BLOCK_PIXELS
+    middle = (view.cx / across, view.cy / across)
+    off = 1.5 * (across - 1) / across
+    sizes = {"width": columns, "height": rows, "fx": view.fx / across, "fy": view.fy / across}
+    return replace(view, cx=middle[0] + off, cy=middle[1] + off, distortion=(), **sizes)
 
 
 def block_factors(plan: WholePlan, chart: Chart, /) -> Float:
@@ -63,7 +68,7 @@ def block_factors(plan: WholePlan, chart: Chart, /) -> Float:
         # Rows are zones: the sine of half their height takes the place of the half.
         horizon = 2 * np.sin(np.pi / view.height / 2) * 2 * np.pi / view.width
         return np.full(block_shape(view), horizon) / chart.cell**2
-    return block_view(view).solid_angles() / 4 / chart.cell**2
+    return block_view(view).solid_angles() / BLOCK_PIXELS**2 / chart.cell**2
 
 
 def block_places(plan: WholePlan, chart: Chart, /) -> Float:
@@ -90,6 +95,7 @@ def windows(plan: WholePlan, chart: Chart, /) -> Windows:
 def _flat(plan: WholePlan, chart: Chart, places: Float) -> Windows | None:
     """Windows about each cell's own block."""
     rows, columns = places.shape[:2]
+    shape = chart.array_shape(1)
     at = block_view(plan.view).project(chart.cell_directions(1))
     # Cells far outside look at the nearest blocks, in vain.
     at = np.clip(np.nan_to_num(at, nan=0.0), [-1, -1], [columns, rows])
@@ -106,7 +112,7 @@ def _flat(plan: WholePlan, chart: Chart, places: Float) -> Windows | None:
     along = (corners[2] - corners[0] + corners[3] - corners[1]) / (2 * max(tall, 1))
     middle = places[y + tall // 2, x + wide // 2]
     start = middle - across * (wide // 2) - along * (tall // 2)
-    cells = np.stack(np.mgrid[: x.shape[0], : x.shape[1]][::-1], -1)
+    cells = np.stack(np.meshgrid(np.arange(shape[1]), np.arange(shape[0])), -1)
     off = 0.0
     for i, j in ((0, 0), (wide, 0), (0, tall), (wide, tall), (wide // 2, tall), (wide, tall // 2)):
         there = places[y + j, x + i]

@@ -2,14 +2,15 @@
 
     python tools/make_street.py examples/street
 
-``street.glb`` has everything but the light: the road, a pavement of slabs, lamp posts, a house front
-with windows on the right, a garden wall and houses on the left. Metres, +Y up, y = 0 on the road,
+``street.glb`` has everything but the light: the road, a pavement of slabs, lamp posts, on the right
+a house front with windows, on the left a garden wall and houses. Metres, +Y up, y = 0 on the road,
 which runs along −Z.
 """
 
 from __future__ import annotations
 
 import argparse
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -70,7 +71,7 @@ def stones(
         z = NEAR_Z - row * along
         edges = np.arange(x[0] - across * 0.5 * (row % 2), x[1] + across, across).clip(*x)
         edges = np.unique(edges)
-        for left, right in zip(edges[:-1], edges[1:], strict=True):
+        for left, right in pairwise(edges):
             tilt = rng.normal(0, TILT, 2)
             normal = np.array([tilt[0], 1, tilt[1]]) / np.hypot(1, np.hypot(*tilt))
             y = level + rng.normal(0, 0.003)
@@ -188,8 +189,8 @@ def post(x: float, z: float) -> tuple[str, Solid]:
     profile = [
         (0.16, 0.0), (0.16, 0.25), (0.11, 0.32), (0.10, 0.75), (0.13, 0.80), (0.13, 0.86),
         (0.055, 0.95), (0.048, 2.6), (0.075, 2.64), (0.075, 2.69), (0.042, 2.75),
-        (0.036, POST_M - 0.28), (0.06, POST_M - 0.24), (0.05, POST_M - 0.18),
-        (0.085, POST_M - 0.115), (0.001, POST_M - 0.11),
+        (0.036, POST_M - 0.28), (0.05, POST_M - 0.24), (0.035, POST_M - 0.18),
+        (0.06, POST_M - 0.09), (0.001, POST_M - 0.085),
     ]  # fmt: skip
     # Doubled rings keep the edges of the profile.
     radius, height = np.repeat(np.array(profile), 2, axis=0).T

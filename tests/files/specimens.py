@@ -197,6 +197,14 @@ end_header
 3 0 2 3
 """
 
+GAPS_CSV = b"""azimuth_degrees,elevation_degrees,diameter_degrees
+3.5,12.0,0.2
+-4.0,9.5,0.35
+"""
+GAPS_JSON = (
+    b'[{"azimuth_degrees": 3.5, "elevation_degrees": 12.0, "diameter_degrees": 0.2}, '
+    b'{"azimuth_degrees": -4, "elevation_degrees": 9.5, "diameter_degrees": 0.35}]'
+)
 EXPOSURE_LIST = b"""# Filename exposure 1/shutter_speed f/stop gain(db) ND_filters
 bright.png 2 0.5 8 0 0
 middle.png 0.5 2 8 0 0
@@ -341,4 +349,6 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "exposures.list": _write(EXPOSURE_LIST),
     "gaze.csv": _write(own_gaze().encode()),
     "gaze.eyelink": _write(EYELINK.encode()),
+    "gaps.csv": _write(GAPS_CSV),
+    "gaps.json": _write(GAPS_JSON),
 }

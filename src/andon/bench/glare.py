@@ -10,6 +10,7 @@ scenes, not arrays; it sums blurred pictures of some sizes in pixels, which is n
 
 from __future__ import annotations
 
+import importlib
 from functools import partial
 from typing import Any
 
@@ -25,6 +26,7 @@ from andon.gpu.device import open_gpu
 from andon.gpu.textures import make_texture
 from andon.observer.spread.family import spread_function
 from andon.spaces import View, pinhole_view
+from andon.verify.registry import NotShown
 
 __all__ = ["ROWS", "planar_kernel"]
 
@@ -76,6 +78,13 @@ def planar_kernel(
     return share
 
 
+def _scipy(part: str) -> Any:
+    try:
+        return importlib.import_module(f"scipy.{part}")
+    except ImportError as reason:
+        raise NotShown(str(reason)) from None
+
+
 class _Ours:
     """The stage and its picture."""
 
@@ -119,11 +128,11 @@ class _Ours:
 
     def likeness(self, expected: NDArray[Any]) -> float:
         """1 − relative RMS of the veil, where it is a few pixels beside all sources."""
-        from scipy.ndimage import distance_transform_edt
-
+        ndimage = _scipy("ndimage")
         veil = self.veil()
         least = max(BESIDE_PX, np.radians(BESIDE_DEGREES) * self.view.fx)
-        beside = np.asarray(distance_transform_edt(self.picture.max(axis=-1) == 0)) >= least
+        beside = np.asarray(ndimage.distance_transform_edt(self.picture.max(axis=-1) == 0))
+        beside = beside >= least
         off, whole = (veil - expected)[beside], expected[beside]
         return 1 - float(np.sqrt(np.sum(off**2) / np.sum(whole**2)))
 
@@ -134,13 +143,12 @@ class _Ours:
 
 def _against_fft(size: str, hfov_degrees: float) -> Duel:
     """Both from picture to veil; the peer's kernel is transformed beforehand."""
-    from scipy import fft
-
+    fft = _scipy("fft")
     ours = _Ours(size, hfov_degrees)
     height, width = ours.view.shape
     kernel = planar_kernel(ours.kernel, ours.view.fx, ours.view.shape)
     # Zeros as wide as the picture, so that nothing comes round.
-    padded = tuple(fft.next_fast_len(2 * n, real=True) for n in ours.view.shape)
+    padded: tuple[int, ...] = tuple(fft.next_fast_len(2 * n, real=True) for n in ours.view.shape)
     whole = np.zeros(padded)
     rows, columns = np.mgrid[-height : height + 1, -width : width + 1]
     np.add.at(whole, (rows % padded[0], columns % padded[1]), kernel)

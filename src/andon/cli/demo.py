@@ -24,8 +24,8 @@ AGES = (20.0, 45.0, 70.0)
 def run(name: str, out: Path, engine: str) -> None:
     """Writes pictures into `out`.
 
-    photo: contact-sheet.png, relit.png, relit-dimmed.png and illuminance.exr; glass: glass.png; glare:
-    glare.png, and beside younger eyes and none glare-ages.png.
+    photo: contact-sheet.png, relit.png, relit-dimmed.png and illuminance.exr; glass: glass.png;
+    glare: glare.png, and beside younger eyes and none glare-ages.png.
     """
     if name not in DEMONSTRATIONS:
         near = nearest_name(name, list(DEMONSTRATIONS))

@@ -12,7 +12,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from andon.cli import glare, glare_komorebi, glare_psf
+from andon.cli import glare, glare_figures, glare_komorebi, glare_psf
 
 __all__ = ["PICTURE", "glare_app"]
 
@@ -40,3 +40,4 @@ glare_app = typer.Typer(
 glare_app.command(PICTURE)(glare.picture)
 glare_app.command("psf")(glare_psf.psf)
 glare_app.command("komorebi")(glare_komorebi.komorebi)
+glare_app.command("figures")(glare_figures.figures)

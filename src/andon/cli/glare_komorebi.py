@@ -19,7 +19,10 @@ class KomorebiOptions:
 
     leaves: Annotated[
         Path,
-        typer.Argument(help="Picture of leaves against the sky; without colours: a mask of gaps."),
+        typer.Argument(
+            help="Picture of leaves against the sky; without colours: a mask of gaps; CSV, JSON: a "
+            "list of them."
+        ),
     ]
     out: Annotated[Path, typer.Option("-o", "--out", help="WebP, PNG, GIF that move; or a folder.")]
     seconds: Annotated[float, typer.Option(help="Length.")] = 5.0

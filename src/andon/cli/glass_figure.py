@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.cli.console import note
+from andon.cli.examples import example_folder
 from andon.errors import InputError, MachineError
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from andon.pipeline import Renderer
     from andon.scene import Scene
 
-__all__ = ["FigureOptions", "example_folder", "run"]
+__all__ = ["FigureOptions", "run"]
 
 Rgb = NDArray[np.uint8]
 
@@ -39,17 +40,6 @@ class FigureOptions:
     engine: str = "auto"
 
 
-def example_folder() -> Path:
-    """The paper's scene: in the package, or beside its sources."""
-    here = Path(__file__).resolve().parents[1]
-    for folder in (here / "data" / "glass", here.parents[1] / "examples" / "glass"):
-        if (folder / "scene.toml").exists():
-            return folder
-    raise MachineError(
-        "the example scene is missing", remedy="install Andon again, or give --scene"
-    )
-
-
 def run(options: FigureOptions) -> None:
     """Draws the sheet, and each of its pictures beside it."""
     from andon.display.false_colour import contact_sheet
@@ -58,7 +48,7 @@ def run(options: FigureOptions) -> None:
 
     if options.samples < 1:
         raise InputError(f"must be ≥ 1, got {options.samples}", field="--samples")
-    scene = load_scene(options.scene or example_folder() / "scene.toml")
+    scene = load_scene(options.scene or example_folder("glass", "scene.toml") / "scene.toml")
     _check(scene)
     try:
         options.out.mkdir(parents=True, exist_ok=True)

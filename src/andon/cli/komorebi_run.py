@@ -21,21 +21,25 @@ if TYPE_CHECKING:
     from andon.glare.komorebi.seen import Seen
     from andon.lamps.flicker import Flicker
 
-__all__ = ["run"]
+__all__ = ["canopy_of", "drawn_by", "run"]
+
+# Size of the picture of a list of gaps.
+LISTED_PX = (960, 540)
 
 
 def run(options: KomorebiOptions) -> None:
     """Reads, draws, writes. Raises `InputError` before anything is drawn."""
     times = _check(options)
-    canopy = _canopy(options)
+    canopy = canopy_of(options)
     seen = _seen(options, canopy)
     scale = exposure_of(options.exposure)
     if scale is None:
-        scale = seen.units_per_cd_m2
+        # The sky between the leaves is just white.
+        scale = 1 / max(canopy.sky_cd_m2, 1e-30)
     _tell(seen.komorebi, scale)
     height, width = canopy.view.shape
 
-    picture = _drawn_by(seen, options.engine)
+    picture = drawn_by(seen, options.engine)
 
     def draw(time_seconds: float) -> NDArray[np.uint8]:
         from andon.cli.glare_outputs import exposed
@@ -74,7 +78,22 @@ def _of_glare(options: KomorebiOptions) -> GlareOptions:
     )
 
 
-def _canopy(options: KomorebiOptions) -> Canopy:
+def _listed(options: KomorebiOptions) -> Canopy:
+    """Of a list, which has neither pixels nor leaves."""
+    from andon.files.gaps import read_gap_list
+    from andon.glare.calibration import DEFAULT_HFOV_DEGREES, projected
+    from andon.glare.komorebi import canopy_of_list
+
+    hfov = DEFAULT_HFOV_DEGREES if options.hfov_degrees is None else options.hfov_degrees
+    view = projected("pinhole", hfov, *LISTED_PX)
+    assert view is not None
+    return canopy_of_list(read_gap_list(options.leaves), view, most=options.gaps or 500)
+
+
+def canopy_of(options: KomorebiOptions) -> Canopy:
+    """Leaves and gaps of the options' picture or list. Raises `InputError` where it has none."""
+    if options.leaves.suffix.lower() in (".csv", ".json"):
+        return _listed(options)
     from andon.files.pictures import read_picture
     from andon.glare.calibration import calibrated
     from andon.glare.cleaning import cleaned
@@ -127,7 +146,7 @@ def _seen(options: KomorebiOptions, canopy: Canopy) -> Seen:
     return Seen(shown, eye, options.model, options.seed)
 
 
-def _drawn_by(seen: Seen, engine: str) -> Callable[[float], NDArray[np.float64]]:
+def drawn_by(seen: Seen, engine: str) -> Callable[[float], NDArray[np.float64]]:
     """What draws moments: the GPU where there is one, unless the reference is asked for."""
     if engine == "reference":
         return seen.picture

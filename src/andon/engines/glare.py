@@ -4,28 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.engines.adaptation import adaptation_cd_m2
 from andon.errors import InputError
+from andon.glare.around import Around, around
 from andon.glare.kernel import Kernel
-from andon.glare.needles.determinants import needles_of
-from andon.glare.needles.model import NeedleModel, Needles, Which
+from andon.glare.needles.model import NeedleModel, Which
 from andon.glare.sources.live import LiveSources, SourceFinder
 from andon.glare.whole_picture.plan import WholePlan, plan_whole
 from andon.observer.presets import eye_of
 from andon.observer.spread.family import spread_function
-from andon.observer.spread.model import Eye
+from andon.observer.spread.model import Eye, SpreadFunction
 from andon.quantities import CameraFrame, photometric
 from andon.scene import Scene
 from andon.spaces import View
 
 Float = NDArray[np.float64]
 
-__all__ = ["SceneGlare", "glare_of", "with_clipped_light"]
+__all__ = ["SceneGlare", "glare_of", "taken_share", "with_clipped_light"]
 
 # Adaptation of relative scenes, which do not say how bright anything is: a room in the evening.
 EVENING_CD_M2 = 10.0
@@ -40,38 +39,59 @@ class SceneGlare:
     Attributes
     ----------
     eye, kernel : whose eye, and how it scatters.
-    renderer : of the bloom.
     contrast : luminance of a source over the ambient from which it has halo and needles.
     needles : constants; None: no needles.
     seed : pattern of the needles.
-    plans : of the whole picture, by view.
+    plans : of the whole picture, by view; none where only sources are scattered.
     """
 
     eye: Eye
     kernel: Kernel
-    renderer: Literal["per-source", "whole-picture"]
     contrast: float
     needles: NeedleModel | None
     seed: int
     plans: Mapping[str, WholePlan]
 
+    @property
+    def bloom_share(self) -> float:
+        """Share of a source's light that becomes bloom where only sources are scattered."""
+        return 0.0 if self.plans else self.kernel.share
+
+    @property
+    def ring(self) -> SpreadFunction | None:
+        """The spread function whose ring is drawn; None where the eye sees none."""
+        spread = self.kernel.spread
+        return None if spread.halo_per_sr is None else spread
+
     def finder(self, view: View, /) -> SourceFinder:
         """What finds the sources of a view's frames."""
         return SourceFinder(view, contrast=self.contrast, most=MOST_SOURCES)
 
-    def needles_of(self, found: LiveSources, view: View, /) -> tuple[Needles, ...]:
-        """Needles of each source, as the eye of a view sees them."""
-        if self.needles is None:
-            return ()
+    def around(self, found: LiveSources, view: View, /) -> Around:
+        """Halo and needles of each source, as the eye of a view sees them."""
         which: Which = (
             "left" if view.name == "left" else "right" if view.name == "right" else "mono"
         )
-        return tuple(
-            needles_of(
-                source, self.eye, found.ambient_cd_m2, self.seed, which=which, model=self.needles
-            )
-            for source in found.sources
+        luminance = np.array([photometric(each.luminance_cd_m2) for each in found.sources])
+        return around(
+            found.sources,
+            luminance,
+            found.ambient_cd_m2,
+            self.eye,
+            self.kernel,
+            seed=self.seed,
+            which=which,
+            needles=self.needles,
+            contrast=self.contrast,
         )
+
+
+def taken_share(found: LiveSources, seen: Around, /) -> Float:
+    """(3,) share of the sources' light that halo and needles are made of, all of them alike."""
+    if not found.sources:
+        return np.zeros(3)
+    lux = np.array([source.illuminance_lux for source in found.sources])
+    return (seen.taken * lux).sum(axis=0) / np.maximum(lux.sum(axis=0), 1e-30)
 
 
 def glare_of(
@@ -98,7 +118,6 @@ def glare_of(
     return SceneGlare(
         eye,
         kernel,
-        "whole-picture" if whole else "per-source",
         table.highlight_contrast,
         replace(NeedleModel(), contrast=table.highlight_contrast) if table.needles else None,
         scene.scene.seed if table.seed is None else table.seed,

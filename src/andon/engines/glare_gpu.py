@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.engines.glare import MOST_SOURCES, SceneGlare
+from andon.engines.glare import MOST_SOURCES, SceneGlare, taken_share
+from andon.engines.glare_lamps import UnpicturedLamps
 from andon.glare.needles.stage import NeedleStage
+from andon.glare.per_source.model import PerSource
+from andon.glare.per_source.stage import PerSourceStage
 from andon.glare.sources.live import LiveSources
 from andon.glare.sources.stage import SourceStage
 from andon.glare.whole_picture.stage import WholePictureStage
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
-from andon.gpu.passes import FullscreenPass
-from andon.gpu.textures import Texture, make_texture
-from andon.quantities import CameraFrame
+from andon.gpu.layout import HostStruct
+from andon.gpu.passes import FullscreenPass, color_attachment
+from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
+from andon.lamps import Lamp
+from andon.quantities import CameraFrame, Geometry
+from andon.transport.direct.records import MAX_LAMPS
 
 __all__ = ["GlareView"]
 
+SHARP = "andon/glare/sharp.wgsl"
+TAKEN_SHARE = HostStruct("TakenShare", (("taken", "vec3f"), ("least", "f32")))
 HALF_MOST = float(np.finfo(np.float16).max)
 PLUS = {
     part: {"operation": "add", "src_factor": "one", "dst_factor": "one"}
@@ -42,19 +51,30 @@ class GlareView:
         glare: SceneGlare,
         frame: CameraFrame,
         light: Texture,
+        geometry: Geometry,
         real_linear: NDArray[Any] | None = None,
     ) -> None:
-        """`light` rgba16float; `real_linear` (H, W, 3): what glares by itself, see-through."""
+        """`light` rgba16float; `real_linear` (H, W, 3): what glares by itself, see-through.
+
+        `geometry` hides lamps.
+        """
         view, per_unit = frame.view, frame.luminance_per_unit
         self.gpu, self.glare, self.view = gpu, glare, view
         self.seen = make_texture(gpu, "rgba16float", view.width, view.height, label="seen")
         self.found = LiveSources(0.0)
-        self._see_through: _SeeThrough | None = None
+        self._virtual: _Virtual | None = None
+        self._sharp = _Sharp(gpu, light, self.seen)
         if real_linear is not None:
-            self._see_through = _SeeThrough(gpu, light, real_linear, self.seen)
-            light = self._see_through.virtual
+            self._virtual = _Virtual(gpu, light, real_linear)
+            light = self._virtual.light
         self._find = SourceStage(gpu, light, glare.finder(view), per_unit)
-        self._veil = WholePictureStage(gpu, light, self.seen, glare.plans[view.name])
+        self._veil: WholePictureStage | None = None
+        if glare.plans:
+            self._veil = WholePictureStage(gpu, light, self.seen, glare.plans[view.name])
+        self._stars = PerSourceStage(gpu, view, MOST_SOURCES, luminance_per_unit=per_unit)
+        self._unpictured = UnpicturedLamps(geometry, HALF_MOST * per_unit)
+        self._lamps = PerSourceStage(gpu, view, MAX_LAMPS, luminance_per_unit=per_unit)
+        self._taken = _Taken(gpu, light, self.seen, per_unit)
         self._needles: NeedleStage | None = None
         if glare.needles is not None:
             most = MOST_SOURCES * glare.needles.most
@@ -64,56 +84,110 @@ class GlareView:
 
     def encode_sources(self, encoder: Any) -> None:
         """Records what `update` reads."""
-        if self._see_through is not None:
-            self._see_through.encode_virtual(encoder)
+        if self._virtual is not None:
+            self._virtual.encode(encoder)
         self._find.encode(encoder)
 
-    def update(self) -> None:
+    def update(self, lamps: Sequence[Lamp]) -> None:
         """Finds the sources, once what was recorded has run."""
-        self.found = self._find.read()
+        found, unpictured = self._unpictured.split(lamps, self._find.read(), self.view)
+        self.found = found
+        self._lamps.update(unpictured, self.glare.kernel)
+        seen = self.glare.around(found, self.view)
         if self._needles is not None:
-            self._needles.update(self.glare.needles_of(self.found, self.view))
+            self._needles.update(seen.needles)
+        self._stars.update(
+            [source.rounded() for source in found.sources],
+            self.glare.kernel,
+            halo=self.glare.ring,
+            weights=seen.halo_weights.tolist(),
+            settings=PerSource(bloom_drawn=self._veil is None),
+        )
+        share = taken_share(found, seen) + self.glare.bloom_share
+        self._taken.update(found, share, self.glare.contrast)
 
     def encode(self, encoder: Any) -> None:
         """Records the picture as it is seen."""
-        if self._see_through is None:
+        if self._veil is not None and self._virtual is None:
             self._veil.encode(encoder)
         else:
-            self._veil.encode_glare(encoder, self.seen)
-            self._see_through.encode_all(encoder)
-        self._encode_sources(encoder, self.seen)
+            self._encode_veil(encoder, self.seen)
+            self._sharp.encode(encoder)
+        if self._virtual is None:
+            self._taken.encode(encoder)
+        self._encode_stars(encoder, self.seen)
 
     def encode_glare(self, encoder: Any, target: Texture) -> None:
         """Records what glare adds alone, into `target` (rgba16float)."""
-        self._veil.encode_glare(encoder, target)
-        self._encode_sources(encoder, target)
+        self._encode_veil(encoder, target)
+        self._encode_stars(encoder, target)
 
-    def _encode_sources(self, encoder: Any, target: Texture) -> None:
+    def _encode_veil(self, encoder: Any, target: Texture) -> None:
+        if self._veil is not None:
+            self._veil.encode_glare(encoder, target)
+        else:
+            attachments = [color_attachment(target.view)]
+            encoder.begin_render_pass(label="no veil", color_attachments=attachments).end()
+
+    def _encode_stars(self, encoder: Any, target: Texture) -> None:
+        self._stars.encode(encoder, target)
+        self._lamps.encode(encoder, target)
         if self._needles is not None:
             self._needles.encode(encoder, target)
 
 
-class _SeeThrough:
-    """What a see-through display adds to the real light, and both on top of its glare."""
+class _Virtual:
+    """What a see-through display adds to the real light."""
 
-    def __init__(
-        self, gpu: Gpu, light: Texture, real_linear: NDArray[Any], target: Texture
-    ) -> None:
+    def __init__(self, gpu: Gpu, light: Texture, real_linear: NDArray[Any]) -> None:
         size = (light.width, light.height)
         real = make_texture(gpu, "rgba16float", *size, label="real")
         codes = np.zeros((*real_linear.shape[:2], 4))
         codes[..., :3] = np.clip(real_linear, 0, HALF_MOST)
         real.write(codes)
-        self.virtual = make_texture(gpu, "rgba16float", *size, label="virtual")
-        self._target = target
+        self.light = make_texture(gpu, "rgba16float", *size, label="virtual")
         group = [bind_group(gpu, {0: ("float", light.view), 1: ("float", real.view)}, "light")]
-        module, formats = "andon/glare/see_through.wgsl", [target.format]
-        self._split = FullscreenPass(gpu, module, "virtual_light", formats, group)
-        self._join = FullscreenPass(gpu, module, "all_light", formats, group, blend=PLUS)
+        self._pass = FullscreenPass(gpu, SHARP, "virtual_light", [self.light.format], group)
 
-    def encode_virtual(self, encoder: Any) -> None:
-        self._split.encode(encoder, [self.virtual.view])
+    def encode(self, encoder: Any) -> None:
+        self._pass.encode(encoder, [self.light.view])
 
-    def encode_all(self, encoder: Any) -> None:
+
+class _Sharp:
+    """Adds the picture as it was to its glare."""
+
+    def __init__(self, gpu: Gpu, light: Texture, target: Texture) -> None:
+        self._target = target
+        group = [bind_group(gpu, {0: ("float", light.view)}, "light")]
+        self._pass = FullscreenPass(gpu, SHARP, "all_light", [target.format], group, blend=PLUS)
+
+    def encode(self, encoder: Any) -> None:
         whole = (0, 0, self._target.width, self._target.height)
-        self._join.encode_within(encoder, [self._target.view], whole)
+        self._pass.encode_within(encoder, [self._target.view], whole)
+
+
+class _Taken:
+    """Takes the light of halo and needles from the pixels of their sources."""
+
+    def __init__(self, gpu: Gpu, light: Texture, target: Texture, per_unit: float) -> None:
+        self.gpu, self._target, self._per_unit = gpu, target, per_unit
+        self._record = uniform_buffer(gpu, TAKEN_SHARE.dtype.itemsize, "taken")
+        self._within = (0, 0, 0, 0)
+        self._pass = FullscreenPass(
+            gpu,
+            "andon/glare/taken.wgsl",
+            "taken",
+            [target.format],
+            [bind_group(gpu, {0: ("float", light.view), 1: ("uniform", self._record)}, "taken")],
+            structs={TAKEN_SHARE.name: TAKEN_SHARE},
+            blend=PLUS,
+        )
+
+    def update(self, found: LiveSources, share: NDArray[np.float64], contrast: float) -> None:
+        self._within = found.within if share.any() else (0, 0, 0, 0)
+        least = contrast * found.ambient_cd_m2 / self._per_unit
+        write_buffer(self.gpu, self._record, TAKEN_SHARE.pack(taken=share, least=least))
+
+    def encode(self, encoder: Any) -> None:
+        if self._within[2]:
+            self._pass.encode_within(encoder, [self._target.view], self._within)

@@ -82,7 +82,14 @@ class _View:
         unlit = None if through is None else unlit_linear(frame, prepared.ambient)
         if prepared.glare is not None:
             real = None if through is None or unlit is None else ost.real_light(unlit, through)
-            self.glare = GlareView(gpu, prepared.glare, frame, self.luminance, real)
+            self.glare = GlareView(
+                gpu,
+                prepared.glare,
+                frame,
+                self.luminance,
+                prepared.surface.shadow_casters,
+                real,
+            )
             shown = self.glare.seen
         self.display: DisplayStage | OstStage
         if unlit is not None:
@@ -301,7 +308,7 @@ class GpuEngine:
             return luminance
         own.encode_sources(self.encoder)
         self.finish()
-        own.update()
+        own.update(moment.lamps)
         own.encode(self.encoder)
         return own.seen
 

@@ -12,6 +12,8 @@ from andon.composite import reference as composite
 from andon.display import ost
 from andon.display import reference as display
 from andon.display.model import Seen
+from andon.engines.glare_lamps import UnpicturedLamps
+from andon.engines.glare_reference import glare_seen
 from andon.engines.glass import SceneGlass
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
@@ -26,9 +28,6 @@ from andon.glare.highlights.tiles import (
     survey_tiles,
     threshold_cd_m2,
 )
-from andon.glare.needles.reference import draw as draw_needles
-from andon.glare.sources.survey import survey
-from andon.glare.whole_picture import reference as whole_picture
 from andon.glass import reference as glass
 from andon.glass.backdrops.model import SceneOfView
 from andon.glass.backdrops.paper import preblurred, with_blurred_pictures
@@ -66,6 +65,7 @@ class ReferenceEngine:
         self._rays = ShadowRays(prepared.casters(prepared.at(0.0)))
         self._layered: Layered | None = None
         self._glare: Luminance | None = None
+        self._unpictured = UnpicturedLamps(prepared.surface.shadow_casters)
         self._mirrored: Mirrored | None = None
         self._blurred: tuple[float, GlassModel | None] = (0.0, None)
         self.maps_redrawn = 0
@@ -263,13 +263,9 @@ class ReferenceEngine:
             unlit = composite.unlit_linear(frame, self.prepared.ambient)
             real = frame.luminance_per_unit * ost.real_light(unlit, through)
             light = np.maximum(all_light - real, 0)
-        whole = whole_picture.scattered(light, own.plans[frame.view.name])
-        found = own.finder(frame.view).find(survey(light), lambda y, x: light[y, x])
-        added = whole.glare + draw_needles(own.needles_of(found, frame.view), frame.view)
+        stays, added = glare_seen(own, light, frame.view, moment.lamps, self._unpictured)
         self._glare = Luminance(added, word)
-        if through is not None:
-            return Luminance(all_light + added, word)
-        return Luminance(whole.picture - whole.glare + added, word)
+        return Luminance((stays if through is None else all_light) + added, word)
 
     def read_glare(self, frame: CameraFrame) -> Luminance | None:
         """What glare added to the view that was drawn last."""

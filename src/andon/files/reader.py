@@ -28,7 +28,7 @@ class Reader:
     Attributes
     ----------
     name : ``kind.format``; the kind is ``picture``, ``depth``, ``mesh``, ``camera``, ``response``,
-        ``photometry``, ``volume``, ``exposures`` or ``gaze``.
+        ``photometry``, ``volume``, ``exposures``, ``gaze`` or ``gaps``.
     suffixes : lower case, with the dot.
     read : the function that reads it.
     """

@@ -12,6 +12,7 @@ from typing import Literal
 from andon.files.cameras import CAMERA_READERS
 from andon.files.depth import DEPTH_READERS
 from andon.files.exposures import EXPOSURE_READERS
+from andon.files.gaps import GAP_READERS
 from andon.files.gaze import GAZE_READERS
 from andon.files.meshes import MESH_READERS
 from andon.files.photometry import PHOTOMETRY_READERS
@@ -32,6 +33,7 @@ Kind = Literal[
     "volume",
     "exposures",
     "gaze",
+    "gaps",
 ]
 
 READERS: tuple[Reader, ...] = (
@@ -44,6 +46,7 @@ READERS: tuple[Reader, ...] = (
     *VOLUME_READERS,
     *EXPOSURE_READERS,
     *GAZE_READERS,
+    *GAP_READERS,
 )
 
 

@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -96,3 +96,8 @@ class Source:
     def luminance_cd_m2(self) -> Float:
         """(3,) mean over the outline."""
         return self.illuminance_lux / self.outline.solid_angle_sr
+
+    def rounded(self) -> Source:
+        """The same with a circle of the same solid angle as outline."""
+        radius = 2 * np.arcsin(np.sqrt(self.outline.solid_angle_sr / (4 * np.pi)))
+        return replace(self, outline=Outline(np.array([radius])))

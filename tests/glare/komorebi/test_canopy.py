@@ -5,7 +5,7 @@ import pytest
 
 from andon.errors import InputError
 from andon.glare.calibration import projected
-from andon.glare.komorebi import canopy_of_mask, canopy_of_picture
+from andon.glare.komorebi import canopy_of_list, canopy_of_mask, canopy_of_picture
 
 VIEW = projected("pinhole", 40.0, 160, 100)
 
@@ -70,7 +70,7 @@ def test_the_largest_gaps_of_a_mask_are_kept_in_their_order():
     assert canopy.pixels[0] // 160 in range(10, 16)
 
 
-def leaves_and_sky(seed=1):
+def leaves_and_sky():
     """Dark leaves with small holes in their left half, and open sky on the right."""
     light = np.full((*VIEW.shape, 3), 100.0)
     light[:, 110:] = 6000.0
@@ -126,3 +126,15 @@ def test_gaps_do_not_blur_into_one_another():
 def test_what_has_no_gaps_is_refused(make, rule):
     with pytest.raises(InputError, match=rule):
         make()
+
+
+def test_a_list_of_gaps():
+    canopy = canopy_of_list(np.array([[5.0, 3.0, 1.5], [-8.0, -6.0, 0.01]]), VIEW)
+    assert len(canopy) == 2
+    level = np.cos(np.radians(3))
+    right, up = level * np.sin(np.radians(5)), np.sin(np.radians(3))
+    assert np.allclose(canopy.directions[0], [right, -up, level * np.cos(np.radians(5))], atol=2e-3)
+    assert np.isclose(canopy.solid_angles_sr[0], np.pi * np.radians(0.75) ** 2, rtol=0.15)
+    assert canopy.solid_angles_sr[1] == VIEW.solid_angles().ravel()[canopy.pixels[-1]]
+    with pytest.raises(InputError, match="no gap"):
+        canopy_of_list(np.array([[120.0, 0.0, 1.0]]), VIEW)

@@ -22,7 +22,7 @@ VIEWS = {
     "wide": pinhole_view(160, 120, 138.0),
     "very wide": pinhole_view(320, 180, 92.0),
     "fisheye": View("fisheye", 150, 140, 60.0, 55.0, 70.3, 74.5),
-    "fisheye 200": View("fisheye", 120, 120, 34.0, 34.0, 59.5, 59.5),
+    "fisheye 200": View("fisheye", 240, 240, 68.0, 68.0, 119.5, 119.5),
     "latlong": View("latlong", 128, 64),
     "odd latlong": View("latlong", 101, 51),
 }

@@ -14,13 +14,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from andon.glare.gate import HIGHLIGHT_CONTRAST
 from andon.quantities import photometric
 
-__all__ = ["CONTRAST", "AmbientLevel", "ambient_luminance", "contrast", "glares"]
+__all__ = ["AmbientLevel", "ambient_luminance", "contrast", "glares"]
 
 Float = NDArray[np.float64]
 
-CONTRAST = 40.0
 # Lights out: what an eye adapted to darkness still tells from nothing.
 LEAST_CD_M2 = 1e-6
 ROUNDS = 20
@@ -40,7 +40,7 @@ def ambient_luminance(
     /,
     *,
     probe_lux: Float | None = None,
-    gate: float = CONTRAST,
+    gate: float = HIGHLIGHT_CONTRAST,
 ) -> AmbientLevel:
     """The ambient level.
 
@@ -71,7 +71,7 @@ def contrast(luminance_cd_m2: ArrayLike, ambient_cd_m2: float, /) -> Float:
 
 
 def glares(
-    luminance_cd_m2: ArrayLike, ambient_cd_m2: float, gate: float = CONTRAST, /
+    luminance_cd_m2: ArrayLike, ambient_cd_m2: float, gate: float = HIGHLIGHT_CONTRAST, /
 ) -> NDArray[np.bool_]:
     """(...) bool, a highlight of this luminance has a halo and needles."""
     return contrast(luminance_cd_m2, ambient_cd_m2) >= gate

@@ -28,7 +28,20 @@ Monsi & Saeki 1953 (light through leaves).
 
 from __future__ import annotations
 
-from andon.glare.komorebi.canopy import Canopy, canopy_of_mask, canopy_of_picture
+from andon.glare.komorebi.canopy import (
+    Canopy,
+    canopy_of_list,
+    canopy_of_mask,
+    canopy_of_picture,
+)
 from andon.glare.komorebi.model import SUN_LUX, Komorebi, Sun
 
-__all__ = ["SUN_LUX", "Canopy", "Komorebi", "Sun", "canopy_of_mask", "canopy_of_picture"]
+__all__ = [
+    "SUN_LUX",
+    "Canopy",
+    "Komorebi",
+    "Sun",
+    "canopy_of_list",
+    "canopy_of_mask",
+    "canopy_of_picture",
+]

@@ -11,14 +11,17 @@ from andon.errors import InputError
 from andon.glare.komorebi.leaves import behind_gaps, lit_leaves
 from andon.glare.komorebi.select import among_leaves, chosen
 from andon.lamps.flicker.gaps import gaps_of
+from andon.quantities import photometric
 from andon.spaces import View
 
-__all__ = ["Canopy", "canopy_of_mask", "canopy_of_picture"]
+__all__ = ["Canopy", "canopy_of_list", "canopy_of_mask", "canopy_of_picture"]
 
 Float = NDArray[np.float64]
 
 # An open sky and backlit leaves of a mask, which says nothing of light.
 SKY_CD_M2 = 6000.0
+# Of a picture's pixels so many are darker than the sky that shows between leaves, %.
+SKY_PERCENTILE = 99.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +37,7 @@ class Canopy:
     gap : (m,) number of the gap that each belongs to, rising.
     directions : (n, 3) unit, middles, camera frame.
     solid_angles_sr : (n,) of the wholly open gaps.
+    sky_cd_m2 : of what is open to the sky beside the sun.
     """
 
     view: View
@@ -42,6 +46,7 @@ class Canopy:
     gap: NDArray[np.int64]
     directions: Float
     solid_angles_sr: Float
+    sky_cd_m2: float
 
     def __len__(self) -> int:
         return len(self.directions)
@@ -72,7 +77,27 @@ def canopy_of_mask(is_open: NDArray[np.bool_], view: View, /, *, most: int = 500
     """
     _check(np.shape(is_open), view)
     labels = chosen(gaps_of(is_open).labels, view.solid_angles(), most)
-    return _canopy(lit_leaves(labels > 0, SKY_CD_M2), labels, view)
+    return _canopy(lit_leaves(view.shape, SKY_CD_M2), labels, view, SKY_CD_M2)
+
+
+def canopy_of_list(gaps_degrees: Float, view: View, /, *, most: int = 500) -> Canopy:
+    """Round gaps (n, 3) of azimuth, elevation and diameter, as `read_gap_list` has them.
+
+    A gap has at least the pixel in its middle. Raises `InputError` where none is in the view.
+    """
+    azimuth, elevation, diameter = np.radians(gaps_degrees).T
+    level = np.cos(elevation)
+    middles = np.stack(
+        [level * np.sin(azimuth), -np.sin(elevation), level * np.cos(azimuth)], axis=-1
+    )
+    towards, pixel = view.directions(), np.sqrt(view.solid_angles())
+    is_open = np.zeros(view.shape, bool)
+    for middle, across in zip(middles, diameter, strict=True):
+        off = np.linalg.norm(towards - middle, axis=-1)
+        nearest = np.unravel_index(int(np.argmin(off)), view.shape)
+        is_open |= off <= 2 * np.sin(across / 4)
+        is_open[nearest] |= off[nearest] <= pixel[nearest]
+    return canopy_of_mask(is_open, view, most=most)
 
 
 def canopy_of_picture(
@@ -91,10 +116,11 @@ def canopy_of_picture(
     """
     _check(np.shape(luminance_cd_m2)[:2], view)
     labels = among_leaves(luminance_cd_m2, view, most, sun)
-    return _canopy(behind_gaps(luminance_cd_m2, labels > 0), labels, view)
+    sky = float(np.percentile(photometric(luminance_cd_m2), SKY_PERCENTILE))
+    return _canopy(behind_gaps(luminance_cd_m2, labels > 0), labels, view, sky)
 
 
-def _canopy(leaves: Float, labels: NDArray[np.int32], view: View) -> Canopy:
+def _canopy(leaves: Float, labels: NDArray[np.int32], view: View, sky: float) -> Canopy:
     import cv2
 
     inside = np.asarray(labels > 0, np.uint8)
@@ -109,14 +135,8 @@ def _canopy(leaves: Float, labels: NDArray[np.int32], view: View) -> Canopy:
     # Deepest first; among equals those nearer to the middle, so that spots are round.
     off = np.linalg.norm(towards - middles[gap], axis=1)
     order = np.lexsort((off, -depth.ravel()[places], gap))
-    return Canopy(
-        view,
-        leaves,
-        places[order],
-        gap[order],
-        middles,
-        np.bincount(gap, solid, count).astype(np.float64),
-    )
+    areas = np.bincount(gap, solid, count).astype(np.float64)
+    return Canopy(view, leaves, places[order], gap[order], middles, areas, sky)
 
 
 def _check(shape: tuple[int, ...], view: View) -> None:

@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.glare.komorebi.foliage import foliage
+
 __all__ = ["behind_gaps", "lit_leaves"]
 
 Float = NDArray[np.float64]
 
-# Light through a leaf, as a share of the sky's; photometric value 1 in sum of shares.
-GREEN = np.array([0.45, 1.25, 0.15])
-# Of one leaf, and of many behind one another.
-THIN, THICK = 0.28, 0.035
-# Leaves lie over one another deeper inside, over this share of the picture's height.
-DEEPER = 0.03
+# Through what lies over all that is drawn, so that a mask's leaves have no gaps but the mask's.
+LEAST_COVER = np.array([0.13, 0.25, 0.03])
+# Leaves are lit from below as well, by what is around.
+AROUND = 0.008 * np.array([0.7, 1.0, 0.5])
 
 
 def behind_gaps(light: Float, gaps: NDArray[np.bool_], /) -> Float:
@@ -39,13 +39,7 @@ def behind_gaps(light: Float, gaps: NDArray[np.bool_], /) -> Float:
     return closed
 
 
-def lit_leaves(gaps: NDArray[np.bool_], sky_cd_m2: float, /) -> Float:
-    """(H, W, 3) cd/m² of leaves against the light, thin beside the gaps and thick farther off."""
-    import cv2
-
-    off = cv2.distanceTransform(np.asarray(~gaps, np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    thin = np.exp(-np.asarray(off, np.float64) / (DEEPER * len(gaps)))
-    share = THICK + (THIN - THICK) * thin
-    # Light that passed several leaves is greener: red goes first.
-    hue = GREEN ** (1 + 0.5 * (1 - thin[..., None]))
-    return sky_cd_m2 * share[..., None] * hue
+def lit_leaves(shape: tuple[int, int], sky_cd_m2: float, /) -> Float:
+    """(H, W, 3) cd/m² of leaves against the light, without a gap."""
+    through = np.minimum(foliage(shape[1], shape[0]), LEAST_COVER)
+    return sky_cd_m2 * (through + AROUND)

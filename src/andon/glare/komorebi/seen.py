@@ -29,9 +29,6 @@ __all__ = ["Seen", "ambient_of"]
 
 Float = NDArray[np.float64]
 
-# Of the picture's pixels this share is darker than the sky that shows between leaves.
-SKY_PERCENTILE = 99.5
-
 
 def ambient_of(canopy: Canopy, /) -> float:
     """What the eye is adapted to, cd/m²: the mean of the leaves, without what is very bright."""
@@ -60,12 +57,6 @@ class Seen:
     def ambient_cd_m2(self) -> float:
         """See `ambient_of`."""
         return ambient_of(self.komorebi.canopy)
-
-    @property
-    def units_per_cd_m2(self) -> float:
-        """Exposure under which the sky between the leaves is just white."""
-        light = np.asarray(photometric(self.komorebi.canopy.leaves_cd_m2))
-        return float(1 / max(np.percentile(light, SKY_PERCENTILE), 1e-30))
 
     @cached_property
     def plan(self) -> WholePlan:

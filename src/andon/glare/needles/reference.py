@@ -13,13 +13,13 @@ So all pixels together hold a needle's light, however thin it is and wherever it
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from andon.glare.needles.model import REFERENCE_NM, WAVELENGTHS_NM, NeedleModel, Needles
-from andon.spaces import View
+from andon.spaces import View, perpendicular
 
 __all__ = ["EXTENT", "LEAST_HALF_WIDTH", "MARGIN", "draw", "profile_within", "tent_within"]
 
@@ -32,6 +32,8 @@ Float = NDArray[np.float64]
 LEAST_HALF_WIDTH, EXTENT = 1.0, 3.0
 # No light is farther than this from a needle, in pixels.
 MARGIN = 1.5
+# Pixels nearer to a source than so many half-widths of its needles are looked at by all of them.
+WIDTHS_AROUND = 8.0
 
 
 def profile_within(along: ArrayLike, model: NeedleModel, /) -> Float:
@@ -65,11 +67,39 @@ def draw(needles: Sequence[Needles], view: View, /) -> Float:
         inside = directions @ star.direction > np.cos(min(np.pi, star.reach_radians + margin))
         seen, footprint = directions[inside], steps[inside]
         light = np.zeros((len(seen), 3))
+        beside = _beside(star, seen, margin)
         for index in range(len(star)):
-            near = _near(star, index, seen, margin)
+            candidates = beside(index)
+            near = candidates[_near(star, index, seen[candidates], margin)]
             light[near] += _needle(star, index, seen[near], footprint[near])
         picture[inside] += light
     return picture
+
+
+def _beside(star: Needles, directions: Float, margin: float) -> Callable[[int], NDArray[np.int64]]:
+    """Needle → indices of the `directions` (n, 3) in a sector around it, and near the source.
+
+    Sorted by azimuth once, so that no needle looks at all pixels.
+    """
+    right, down = perpendicular(star.direction)
+    x, y = directions @ right, directions @ down
+    widest = float(np.max(star.half_width_radians, initial=0.0)) + margin
+    close = np.hypot(x, y) <= WIDTHS_AROUND * widest
+    middle, others = np.flatnonzero(close), np.flatnonzero(~close)
+    turn = np.arctan2(y, x)[others]
+    order = np.argsort(turn)
+    sector = np.arcsin(1 / WIDTHS_AROUND)
+    # Twice round, so that a sector never goes over the seam.
+    turn = np.concatenate([turn[order], turn[order] + 2 * np.pi])
+    others = np.tile(others[order], 2)
+    azimuths = np.mod(np.arctan2(star.along @ down, star.along @ right) + np.pi, 2 * np.pi) - np.pi
+
+    def candidates(index: int) -> NDArray[np.int64]:
+        azimuth = azimuths[index] + (2 * np.pi if azimuths[index] < sector - np.pi else 0)
+        first, last = np.searchsorted(turn, [azimuth - sector, azimuth + sector])
+        return np.concatenate([middle, others[first:last]])
+
+    return candidates
 
 
 def _near(star: Needles, index: int, directions: Float, margin: float) -> NDArray[np.int64]:

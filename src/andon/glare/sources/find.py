@@ -68,7 +68,7 @@ class FoundSources:
         A table of the veil around an outline takes a tenth of a second, that of a circle none.
         """
         return tuple(
-            source if place < shaped and _elongated(source.outline) else _round(source)
+            source if place < shaped and _elongated(source.outline) else source.rounded()
             for place, source in enumerate(self.sources)
         )
 
@@ -192,12 +192,6 @@ def _groups(moments: Moments, within: float, most: int) -> tuple[NDArray[np.int6
 
 def _elongated(outline: Outline) -> bool:
     return bool(outline.radii_radians.max() > ELONGATED * outline.radii_radians.min())
-
-
-def _round(source: Source) -> Source:
-    """The same with a circle of the same solid angle as outline."""
-    radius = 2 * np.arcsin(np.sqrt(source.outline.solid_angle_sr / (4 * np.pi)))
-    return replace(source, outline=Outline(np.array([radius])))
 
 
 def _named(

@@ -43,10 +43,12 @@ class LiveSources:
     ----------
     ambient_cd_m2 : mean luminance without what is 40 times brighter.
     sources : strongest first.
+    within : (x, y, width, height) in pixels that holds all that is bright.
     """
 
     ambient_cd_m2: float
     sources: tuple[Source, ...] = ()
+    within: tuple[int, int, int, int] = (0, 0, 0, 0)
 
 
 class SourceFinder:
@@ -75,7 +77,11 @@ class SourceFinder:
         kept = weight > 0
         rows, columns = rows[kept], columns[kept]
         light = light[kept] * weight[kept, None]
-        return LiveSources(ambient, tuple(self._sources(rows, columns, light)))
+        if not len(rows):
+            return LiveSources(ambient)
+        left, top = int(columns.min()), int(rows.min())
+        size = int(columns.max()) - left + 1, int(rows.max()) - top + 1
+        return LiveSources(ambient, tuple(self._sources(rows, columns, light)), (left, top, *size))
 
     def _sources(
         self, rows: NDArray[np.intp], columns: NDArray[np.intp], light: Float

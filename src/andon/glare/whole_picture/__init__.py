@@ -11,5 +11,5 @@ Instead of
     a Fourier transform, which is shift-invariant in pixels, hence wrong by ``1/cos²`` off the axis,
     and slower; Gaussian blurs of the picture, wrong likewise.
 Sources
-    Burt and Adelson 1983 (the pyramid); Unser, Aldroubi and Eden 1993 (two-scale B-splines).
+    Burt and Adelson 1983 (the pyramid); Unser 1999 (B-splines and their two-scale relation).
 """

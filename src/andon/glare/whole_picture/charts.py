@@ -169,5 +169,5 @@ def _chart_of(view: View, directions: Float, pixel: float) -> Chart:
     # As many cells as there are blocks, but on the axis not far from CELL_PIXELS.
     even = CELL_PIXELS * math.sqrt(float(np.prod(end - corner)) / (view.width * view.height))
     cell = float(np.clip(even, FINEST * CELL_PIXELS * pixel, COARSEST * CELL_PIXELS * pixel))
-    columns, rows = (int(n) for n in np.ceil((end - corner) / cell))
+    columns, rows = (math.ceil(float(extent) / cell) for extent in end - corner)
     return Chart(np.eye(3), cell, corner, (rows, columns))

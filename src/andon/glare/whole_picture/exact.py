@@ -39,9 +39,9 @@ LATLONG_PARTS = 8
 # Values that are held at once, of one kind.
 BLOCK = 1 << 22
 # Two points of equal weight with the variance of a tent of base ±1, the difference of two pixels.
-TENT = np.array([-1, 1]) / np.sqrt(6)
+TENT: Float = np.array([-1.0, 1.0]) / np.sqrt(6)
 # The same for one box of width 1 (Gauss–Legendre).
-BOX = np.array([-1, 1]) / np.sqrt(12)
+BOX: Float = np.array([-1.0, 1.0]) / np.sqrt(12)
 
 
 def convolved(
@@ -70,35 +70,36 @@ class _Table:
     SMALLEST = 1e-6  # radians
 
     def __init__(self, kernel: Kernel, core: bool) -> None:
-        self.log = np.linspace(np.log(self.SMALLEST), np.log(np.pi), self.STEPS)
-        theta = np.exp(self.log)
-        step = self.log[1] - self.log[0]
+        step = np.log(np.pi / self.SMALLEST) / (self.STEPS - 1)
+        self.log: Float = np.log(self.SMALLEST) + step * np.arange(self.STEPS, dtype=np.float64)
+        theta: Float = np.minimum(np.exp(self.log), np.pi)
         whole = kernel.per_sr(theta, core=True)
         ring = whole * 2 * np.pi * np.sin(theta) * theta
         within = np.concatenate([[0], np.cumsum((ring[1:] + ring[:-1]) / 2 * step)])
         within += np.pi * self.SMALLEST**2 * whole[0]
         # The step at θ_min is left out of the table: it lies between two of its entries.
-        less = (
-            0.0 if core else np.interp(np.log(np.radians(kernel.minimum_degrees)), self.log, within)
-        )
-        self._within = np.maximum(within - less, 0)
+        less = 0.0 if core else self._at(kernel.minimum_degrees, within)
+        self._within: Float = np.maximum(within - less, 0)
         self._value = kernel.per_sr(theta, core=core)
         # ∇²K = (K_xx + (θ·cot θ − 1)·K_x)/θ² with x = log θ.
-        slope = np.gradient(whole, step)
-        bend = np.gradient(slope, step)
+        slope: Float = np.gradient(whole, step)
+        bend: Float = np.gradient(slope, step)
         tangent = np.divide(theta, np.tan(theta), out=np.ones_like(theta), where=theta < 3)
         self._laplacian = (bend + (tangent - 1) * slope) / theta**2
 
+    def _at(self, degrees: float, table: Float) -> float:
+        return np.interp(np.log(np.radians([degrees])), self.log, table).item()
+
     def within(self, theta: Float) -> Float:
         """Share of a point's light that arrives within θ (…)."""
-        return np.interp(np.log(theta), self.log, self._within)
+        return np.asarray(np.interp(np.log(theta), self.log, self._within), np.float64)
 
     def values(self, chord2: Float) -> tuple[Float, Float]:
         """K and ∇²K in sr⁻¹ of squared chords (…), linear in log θ."""
         theta = 2 * np.arcsin(np.minimum(np.sqrt(chord2) / 2, 1))
         place = np.log(np.maximum(theta, self.SMALLEST)) - self.log[0]
         place *= (self.STEPS - 1) / (self.log[-1] - self.log[0])
-        first = np.minimum(place.astype(np.int32), self.STEPS - 2)
+        first = np.minimum(np.asarray(place, np.int32), self.STEPS - 2)
         part = place - first
         k, bend = self._value, self._laplacian
         return (
@@ -109,7 +110,7 @@ class _Table:
     def rings(self, inner: float, outer: float) -> tuple[Float, Float, float]:
         """Angles (n,), shares (n,) and the share within them, of rings from `inner` to `outer`."""
         count = int(np.ceil(np.log(outer / inner) / RING_STEP))
-        edges = np.exp(np.linspace(np.log(inner), np.log(outer), count + 1))
+        edges: Float = inner * np.exp(np.arange(count + 1) / count * np.log(outer / inner))
         within = self.within(edges)
         return np.sqrt(edges[1:] * edges[:-1]), np.diff(within), float(within[0])
 
@@ -168,7 +169,7 @@ def _sent(view: View, table: _Table) -> Float:
     directions, omega = view.directions(), view.solid_angles()
     pixel = np.sqrt(omega)
     # As far as the corner of the box, also where pixels are stretched.
-    grid = np.stack(np.mgrid[: view.height, : view.width][::-1], axis=-1)
+    grid = view.pixel_grid()
     sent = np.zeros((*view.shape, size * size))
     inner = INNER_PIXELS * float(pixel.min())
     outer = min(_reach(view, directions), np.pi)
@@ -182,9 +183,10 @@ def _sent(view: View, table: _Table) -> Float:
             ok = (abs(x) <= NEAR_PIXELS) & (abs(y) <= NEAR_PIXELS)
             bins = np.where(ok, (y + NEAR_PIXELS) * size + x + NEAR_PIXELS, 0)
             weight = np.where(ok, part, 0) * (shares[:, None] / AZIMUTHS)
-            pixels = np.arange(bins.shape[0] * bins.shape[1]).reshape(bins.shape[:2])
+            rows, columns = bins.shape[:2]
+            pixels = np.arange(rows * columns, dtype=np.int64).reshape(rows, columns)
             flat = pixels[..., None, None] * size * size + bins
-            count = pixels.size * size * size
+            count = rows * columns * size * size
             sent[some] += np.bincount(flat.ravel(), weight.ravel(), count).reshape(sent[some].shape)
     sent[..., size * size // 2] += inside
     return sent.reshape(*view.shape, size, size)
@@ -252,7 +254,7 @@ def _latlong(light: Float, view: View, table: _Table) -> Float:
     return np.maximum(np.fft.irfft(spectrum, view.width, axis=1), 0)
 
 
-def _polar(colatitude: Float, azimuth: Float) -> Float:
+def _polar(colatitude: NDArray[Any], azimuth: NDArray[Any]) -> Float:
     sine = np.sin(colatitude)
     parts = [sine * np.sin(azimuth), -np.cos(colatitude), sine * np.cos(azimuth)]
     return np.stack(np.broadcast_arrays(*parts), axis=-1)

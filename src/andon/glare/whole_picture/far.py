@@ -95,17 +95,20 @@ def plan_far(
         to = cells.directions[read & (cells.indices[:, 0] == index)]
         place = chart.array_place(chart.place_from_direction(sources), 1)
         limit = np.array(chart.array_shape(1)[::-1]) - 1
-        covered = ((place >= 0) & (place <= limit)).all(-1)
+        covered: NDArray[np.bool_] = np.all((place >= 0) & (place <= limit), axis=-1)
         chord = np.linalg.norm(to[:, None] - sources, axis=-1)
         levels = np.sqrt(chart.scale(to)[:, None] * np.maximum(chart.scale(sources), LEAST_SCALE))
         ends = (chart.scale(to)[:, None] ** 2 + own[lit] ** 2) / 2
         parts.append(table.matrix(chord, levels, ends, covered))
-    scales = np.geomspace(own.min(), 1, SCALES)
+    matrix = np.concatenate(parts)
+    behind = cells.directions[read] @ sources.T < 0
+    matrix = _not_negative(matrix, behind, (cells.share * own**2)[read])
+    scales = np.geomspace(float(own.min()), 1.0, SCALES).astype(np.float64)
     return Far(
         level,
         cells.indices[lit],
         cells.indices[read],
-        np.concatenate(parts) * cells.share[lit] * width**2,
+        matrix * cells.share[lit] * width**2,
         scales,
         table.shares(scales),
     )
@@ -130,6 +133,17 @@ def _cells(charts: tuple[Chart, ...], level: int) -> _Cells:
     return _Cells(indices, directions, share, read)
 
 
+def _not_negative(matrix: Float, behind: NDArray[np.bool_], areas: Float) -> Float:
+    """`matrix` (m, n) with nothing below 0 `behind` (m, n) a source, and no more light there.
+
+    Where the model fades, what the splines spread has been taken off, which may be too much.
+    """
+    lifted = np.maximum(matrix, 0)
+    before, after = (areas @ np.where(behind, part, 0.0) for part in (matrix, lifted))
+    factor = np.divide(before, after, where=(after > 0) & (before > 0), out=np.zeros_like(after))
+    return np.where(behind, lifted * factor, matrix)
+
+
 @dataclass(frozen=True)
 class _Table:
     """The far kernel over the chord and the scales a and b of both ends, in sr⁻¹.
@@ -148,7 +162,8 @@ class _Table:
     def matrix(self, chord: Float, scale: Float, ends: Float, covered: NDArray[np.bool_]) -> Float:
         """(m, n) of chords (m, n), √(ab) and (a² + b²)/2; `covered` (n,) is what levels have."""
         chords = np.linspace(0, 2, CHORDS)
-        scales = np.geomspace(scale.min() * (1 - 1e-9), scale.max() * (1 + 1e-9), SCALES)
+        ends_of = float(scale.min()) * (1 - 1e-9), float(scale.max()) * (1 + 1e-9)
+        scales = np.geomspace(*ends_of, SCALES).astype(np.float64)
         x = chord / 2 * (CHORDS - 1)
         y = np.log(scale / scales[0]) / np.log(scales[-1] / scales[0]) * (SCALES - 1)
         # All but linear in v.
@@ -161,7 +176,7 @@ class _Table:
     def shares(self, scales: Float) -> Float:
         """(n,) energy of the far kernel on the sphere, of light where the scale is a (n,)."""
         count = 2000
-        theta = (np.arange(count) + 0.5) * (np.pi / count)
+        theta: Float = (np.arange(count, dtype=np.float64) + 0.5) * (np.pi / count)
         rest = self.mixture.per_sr(theta, 1 - self.ladder.near(scales))
         value = rest.T + self.mixture.floor + self._miss(theta)
         return value @ np.sin(theta) * (np.pi / count) * 2 * np.pi

@@ -79,9 +79,12 @@ class Ladder:
 
     def share_of(self, rung: Rung, scale: Float, /) -> Float:
         """(...) share of a point's light that a rung spreads where the chart's scale is a."""
-        blocks = np.interp(scale, self.scales, self.blocks)
-        log_sigma = np.log((rung.sigma * scale) ** 2 + blocks) / 2
+        log_sigma = np.log(self._square(rung, scale)) / 2
         return rung.width * np.interp(log_sigma, self.mixture.log_sigma, self.mixture.share)
+
+    def _square(self, rung: Rung, scale: Float) -> Float:
+        """(...) σ² of a rung in radians²."""
+        return (rung.sigma * scale) ** 2 + np.interp(scale, self.scales, self.blocks)
 
     def near(self, scale: Float, /) -> Float:
         """(..., n) χ at the mixture's σ where the chart's scale is a (...)."""
@@ -94,7 +97,7 @@ class Ladder:
         """
         total = np.zeros(np.broadcast_shapes(np.shape(chord), np.shape(scale)))
         for rung in self.rungs:
-            square = (rung.sigma * scale) ** 2
+            square = self._square(rung, scale)
             sigma = np.sqrt(np.maximum(square - less, square / 2))
             total += self.share_of(rung, scale) * bump(chord, sigma)
         return total

@@ -12,9 +12,6 @@ const WIDE_RADIUS: i32 = 2;
 const WIDE_TAPS = array<f32, 3>(0.5f, 0.2f, 0.05f);
 const HAS_ABOVE: bool = true;
 const HAS_FAR: bool = true;
-// What is not veil, of a point's light.
-const STAYS: f32 = 0.7f;
-
 fn weight_of_row(row: i32) -> f32 {
   return 1.0;
 }

@@ -166,7 +166,7 @@ def _filtered(cells: Float, half: tuple[float, ...]) -> Float:
 def _far(light: list[Float], plan: WholePlan) -> list[Float]:
     """A of the far part at level F, a picture per chart."""
     of, to = plan.far.light_cells, plan.far.receiving_cells
-    sent = np.stack([light[chart][row, column] for chart, row, column in of])
+    sent: Float = np.stack([light[int(chart)][row, column] for chart, row, column in of])
     veils = [np.zeros_like(cells) for cells in light]
     for (chart, row, column), value in zip(to, plan.far.matrix @ sent, strict=True):
         veils[chart][row, column] = value

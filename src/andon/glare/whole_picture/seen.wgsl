@@ -1,7 +1,5 @@
 // The veil on its way out: cells of level 1 → blocks → pixels. Alpha is what stays in a pixel.
 
-//!import andon/glare/whole_picture/numbers.wgsl
-
 @group(0) @binding(0) var veil: texture_2d<f32>;
 // Place (xy) of each block in the chart, the chart's share (z) and what stays there of it (w).
 @group(0) @binding(1) var places: texture_2d<f32>;
@@ -47,19 +45,15 @@ fn read(cells: texture_2d<f32>, at: vec4f) -> vec4f {
   return textureSampleLevel(blocks, linear, place, 0.0);
 }
 
-fn usable(light: vec4f) -> vec4f {
-  let clean = select(vec3f(0.0), min(light.xyz, vec3f(65504.0)), light.xyz > vec3f(0.0));
-  return vec4f(clean, light.w);
-}
-
-@fragment fn copied(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
-  return usable(textureLoad(picture, vec2i(pixel.xy), 0));
-}
-
-// What is added: the veil, and what coarse pixels scatter within themselves.
+// What is added alone.
 @fragment fn added(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
-  let light = usable(textureLoad(picture, vec2i(pixel.xy), 0)).xyz;
   let place = (0.5 * pixel.xy + 1.0) / vec2f(textureDimensions(blocks));
-  let seen = textureSampleLevel(blocks, linear, place, 0.0);
-  return vec4f(seen.xyz + max(seen.w - STAYS, 0.0) * light, 0.0);
+  return vec4f(textureSampleLevel(blocks, linear, place, 0.0).xyz, 0.0);
+}
+
+// NaN and negative light compare false and become 0; infinity becomes the limit.
+@fragment fn copied(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+  let light = textureLoad(picture, vec2i(pixel.xy), 0);
+  let usable = select(vec3f(0.0), min(light.xyz, vec3f(65504.0)), light.xyz > vec3f(0.0));
+  return vec4f(usable, light.w);
 }

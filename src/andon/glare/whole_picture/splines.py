@@ -2,7 +2,7 @@
 
 A point at a fractional index adds to three cells an axis and a place reads three: seen together, a
 level's point-spread function is ``B ∗ P ∗ B``, of variance ½ + var P cells². A spline of one level
-*is* a sum of splines of the next, [1 3 3 1]/4 (Unser, Aldroubi and Eden 1993), so light that goes
+*is* a sum of splines of the next, [1 3 3 1]/4 (Unser 1999), so light that goes
 in at level 1 and is reduced lies as if it had gone in at any level.
 """
 

@@ -258,18 +258,14 @@ class WholePictureStage:
         return {4: ("smooth", veil.view), 5: ("linear sampler", self._sampler)}
 
     def _last(self) -> tuple[FullscreenPass, FullscreenPass, FullscreenPass]:
-        """The picture itself; the veil on top of it; what is added alone."""
-        smooth, source = self._smooth(self._veils[0]), {6: ("float", self._source.view)}
-        groups = (source, smooth, smooth | source)
-        picture, veil, both = ([bind_group(self.gpu, group, "last")] for group in groups)
-        variants = {NUMBERS: _numbers(self.plan)}
+        """The picture itself; the veil on top of it; the veil alone."""
+        veil = [bind_group(self.gpu, self._smooth(self._veils[0]), "veil")]
+        picture = [bind_group(self.gpu, {6: ("float", self._source.view)}, "picture")]
         path, formats = f"{FOLDER}/seen.wgsl", [self._target.format]
         return (
-            FullscreenPass(self.gpu, path, "copied", formats, picture, variants=variants),
-            FullscreenPass(
-                self.gpu, path, "expand_blocks", formats, veil, variants=variants, blend=STAYS
-            ),
-            FullscreenPass(self.gpu, path, "added", formats, both, variants=variants),
+            FullscreenPass(self.gpu, path, "copied", formats, picture),
+            FullscreenPass(self.gpu, path, "expand_blocks", formats, veil, blend=STAYS),
+            FullscreenPass(self.gpu, path, "added", formats, veil),
         )
 
     def encode(self, encoder: Any) -> None:
@@ -292,7 +288,7 @@ class WholePictureStage:
         render.end()
 
     def encode_glare(self, encoder: Any, texture: Texture) -> None:
-        """Records what is added alone into `texture` (rgba16float, of the view's size), alpha 0."""
+        """Records the veil alone into `texture` (rgba16float, of the view's size), alpha 0."""
         self._encode_veil(encoder)
         self._alone.encode(encoder, [texture.view])
 
@@ -360,7 +356,6 @@ def _numbers(
     taps = [filters(level)[rung.which] for rung in rungs] + [(1.0, 0.0)] * (2 - len(rungs))
     lines = [
         f"const MARGIN: i32 = {MARGIN};",
-        f"const STAYS: f32 = {1 - plan.kernel.share:.9g}f;",
         f"const WINDOW = vec2i({columns}, {rows});",
         f"const RUNGS: i32 = {len(rungs)};",
         f"const HAS_ABOVE: bool = {str(level < plan.levels).lower()};",

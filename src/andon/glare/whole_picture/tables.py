@@ -95,6 +95,7 @@ def windows(plan: WholePlan, chart: Chart, /) -> Windows:
 def _flat(plan: WholePlan, chart: Chart, places: Float) -> Windows | None:
     """Windows about each cell's own block."""
     rows, columns = places.shape[:2]
+    shape = chart.array_shape(1)
     at = block_view(plan.view).project(chart.cell_directions(1))
     # Cells far outside look at the nearest blocks, in vain.
     at = np.clip(np.nan_to_num(at, nan=0.0), [-1, -1], [columns, rows])
@@ -111,7 +112,7 @@ def _flat(plan: WholePlan, chart: Chart, places: Float) -> Windows | None:
     along = (corners[2] - corners[0] + corners[3] - corners[1]) / (2 * max(tall, 1))
     middle = places[y + tall // 2, x + wide // 2]
     start = middle - across * (wide // 2) - along * (tall // 2)
-    cells = np.stack(np.mgrid[: x.shape[0], : x.shape[1]][::-1], -1)
+    cells = np.stack(np.meshgrid(np.arange(shape[1]), np.arange(shape[0])), -1)
     off = 0.0
     for i, j in ((0, 0), (wide, 0), (0, tall), (wide, tall), (wide // 2, tall), (wide, tall // 2)):
         there = places[y + j, x + i]

@@ -1,4 +1,4 @@
-// Glare of what an optical see-through display adds; real light glares in the eye by itself.
+// Light as it was: what of it glares behind a see-through display, and all of it beside its glare.
 
 @group(0) @binding(0) var light: texture_2d<f32>;
 @group(0) @binding(1) var real: texture_2d<f32>;

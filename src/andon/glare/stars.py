@@ -19,7 +19,7 @@ from andon.observer.spread.model import Eye
 from andon.quantities import photometric
 from andon.spaces import View
 
-__all__ = ["MOST_STARS", "Stars", "halo_share", "stars_of"]
+__all__ = ["MOST_STARS", "Stars", "stars_of"]
 
 Float = NDArray[np.float64]
 

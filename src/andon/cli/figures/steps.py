@@ -10,14 +10,15 @@ from numpy.typing import NDArray
 
 from andon.cli.figures.model import Asked, Panel
 from andon.display.eye_response import printed
-from andon.glare.gate import gate
+from andon.glare.around import around
+from andon.glare.gate import HIGHLIGHT_CONTRAST
 from andon.glare.kernel import Kernel
-from andon.glare.needles import needles_of
+from andon.glare.needles import NeedleModel
 from andon.glare.needles.reference import draw
 from andon.glare.per_source.reference import halos_of_sources
 from andon.glare.scatter import scatter_all
 from andon.glare.sources.find import FoundSources, find_sources
-from andon.glare.stars import MOST_STARS, halo_share
+from andon.glare.stars import MOST_STARS
 from andon.observer.spread.family import spread_function
 from andon.quantities import photometric
 from andon.spaces import View
@@ -62,16 +63,23 @@ def seen_in_steps(light: Float, view: View, asked: Asked, step: Callable[[], Non
     bloomed = scatter_all(light, view, kernel, asked.engine).picture
     step()
     sources = found.simplified()[:MOST_STARS]
-    haloed = bloomed
-    if kernel.spread.halo_per_sr is not None:
-        weights = gate(photometric(found.luminance_cd_m2[: len(sources)]), found.ambient_cd_m2)
-        ring = halos_of_sources(sources, view, kernel, kernel.spread, weights=weights.tolist())
-        taken = _of_pixels(found, weights[:, None] * halo_share(kernel))
-        haloed = bloomed + ring - taken * light
+    seen = around(
+        sources,
+        photometric(found.luminance_cd_m2[: len(sources)]),
+        found.ambient_cd_m2,
+        eye,
+        kernel,
+        seed=asked.seed,
+        needles=NeedleModel(),
+        contrast=HIGHLIGHT_CONTRAST,
+    )
+    needles = np.array([star.share for star in seen.needles]).reshape(-1, 1) * np.ones(3)
+    haloed = bloomed - _of_pixels(found, seen.taken - needles) * light
+    if seen.halo_weights.any():
+        weights = seen.halo_weights.tolist()
+        haloed += halos_of_sources(sources, view, kernel, kernel.spread, weights=weights)
     step()
-    stars = [needles_of(source, eye, found.ambient_cd_m2, asked.seed) for source in sources]
-    taken = _of_pixels(found, np.array([[star.share] * 3 for star in stars]).reshape(-1, 3))
-    needled = haloed + draw(stars, view) - taken * light
+    needled = haloed + draw(seen.needles, view) - _of_pixels(found, needles) * light
     step()
     return Steps((light, bloomed, haloed, needled), found.ambient_cd_m2)
 

@@ -90,7 +90,7 @@ def boxes() -> list[tuple[int, Float, Float]]:
         entry(0, (-w - 5, FLOOR_M, near), (w + 5, 0, near + 4)),
         entry(1, (-w - 5, 0, far - 2.2), (w + 5, 1.6, far - 1.9)),
         *(entry(2, (x - 0.03, 0, far - 0.53), (x + 0.03, 2.1, far - 0.47)) for x in (-1.7, 1.5)),
-        *(entry(0, (x - 0.22, 0, 3.0), (x + 0.22, 0.5, 3.44)) for x in (-0.9, 0.95)),
+        *(entry(0, (x - 0.22, 0, 3.0), (x + 0.22, 0.5, 3.44)) for x in (-0.8, 0.82)),
     ]
 
 

@@ -86,6 +86,7 @@ def looked_at(*kinds, projection="pinhole"):
 PROJECTION = "andon/gbuffer/projections/{}.wgsl"
 QUADS = "andon/glare/quads/{}.wgsl"
 STRIP = "andon/glare/needles/strip_{}.wgsl"
+OUTLINES = "andon/glare/per_source/{}.wgsl"
 
 
 def projected(name):
@@ -124,6 +125,7 @@ VARIANTS = {
         for name in ("fisheye", "latlong")
     },
     "probes of objects": PROBE_VARIANTS["object"],
+    "glare of any outline": {OUTLINES.format("circle"): OUTLINES.format("outline")},
 }
 
 

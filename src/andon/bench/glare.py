@@ -4,8 +4,10 @@ The transform convolves with one kernel for all pixels, so the two are the same 
 axis alone: at 20° they are compared over the whole picture. At 60° ours is compared with the
 reference, and the peer is timed for what it would take, right or wrong.
 
-Not timed: Blender's Glare node. The wheel of its Python module is 0.4 GB and its compositor draws
-scenes, not arrays; it sums blurred pictures of some sizes in pixels, which is no spread function.
+Not a row: Blender's Glare node. Its module (bpy 5.0.1, 0.4 GB, for Python 3.11 and NumPy 1) can be
+installed, but is no dependency of a test; rendering its compositor by hand with 2 threads at
+1280×720 took 0.65 s of both cores for "Fog Glow" at full size and 0.12 s for "Bloom", which are sums
+of filters in pixels and no spread functions.
 """
 
 from __future__ import annotations

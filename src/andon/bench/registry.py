@@ -76,13 +76,11 @@ class BenchRow:
 
 def rows() -> tuple[BenchRow, ...]:
     """All rows, stage by stage."""
-    from andon.bench import areas, glare, glass, glass_frame, glow, probe_light, probes, relight
-
-    light = relight.ROWS + areas.ROWS + glow.ROWS
-    return light + glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS + glare.ROWS
     from andon.bench import (
         areas,
+        glare,
         glare_needles,
+        glare_quads,
         glass,
         glass_frame,
         glow,
@@ -93,4 +91,4 @@ def rows() -> tuple[BenchRow, ...]:
 
     light = relight.ROWS + areas.ROWS + glow.ROWS
     rest = glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS
-    return light + rest + glare_needles.ROWS
+    return light + rest + glare.ROWS + glare_needles.ROWS + glare_quads.ROWS

@@ -29,7 +29,7 @@ from andon.glare.highlights.tiles import Highlight
 from andon.glass.layers import Layered
 from andon.glow.stage import GlowStage
 from andon.gpu.bindings import BindGroup, bind_group
-from andon.gpu.device import open_gpu
+from andon.gpu.device import Gpu, open_gpu
 from andon.gpu.passes import FullscreenPass
 from andon.gpu.textures import Texture, make_texture
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
@@ -77,27 +77,7 @@ class _View:
             self.glow = GlowStage(gpu, alone, self.luminance, prepared.glow, view)
             self.filtered = make_texture(gpu, alone.format, view.width, view.height, label="glow")
             self.hide = None if self.glass is None else self.glass.hiding(alone)
-        self.glare: GlareView | None = None
-        shown, through = self.luminance, prepared.exposure.see_through
-        unlit = None if through is None else unlit_linear(frame, prepared.ambient)
-        if prepared.glare is not None:
-            real = None if through is None or unlit is None else ost.real_light(unlit, through)
-            self.glare = GlareView(
-                gpu,
-                prepared.glare,
-                frame,
-                self.luminance,
-                prepared.surface.shadow_casters,
-                real,
-            )
-            shown = self.glare.seen
-        self.display: DisplayStage | OstStage
-        if unlit is not None:
-            self.display = OstStage(gpu, shown, frame, prepared.exposure, unlit)
-        else:
-            self.display = DisplayStage(
-                gpu, shown, frame.response, prepared.exposure, frame.luminance_per_unit
-            )
+        self._make_display(gpu, prepared)
         own = {0: ("uint", seen.texture.view), 1: ("uniform", seen.view_buffer)}
         groups = [
             bind_group(gpu, own | self.composite.resources, "frame"),
@@ -120,6 +100,25 @@ class _View:
         self.lux = FullscreenPass(
             gpu, FRAME, "illuminance_map", [self.lux_map.format], groups, **options
         )
+
+    def _make_display(self, gpu: Gpu, prepared: Prepared) -> None:
+        """Glare, and the display of what it leaves."""
+        frame = self.frame
+        self.glare: GlareView | None = None
+        shown, through = self.luminance, prepared.exposure.see_through
+        unlit = None if through is None else unlit_linear(frame, prepared.ambient)
+        if prepared.glare is not None:
+            real = None if through is None or unlit is None else ost.real_light(unlit, through)
+            hiding = prepared.surface.shadow_casters
+            self.glare = GlareView(gpu, prepared.glare, frame, self.luminance, hiding, real)
+            shown = self.glare.seen
+        self.display: DisplayStage | OstStage
+        if unlit is not None:
+            self.display = OstStage(gpu, shown, frame, prepared.exposure, unlit)
+        else:
+            self.display = DisplayStage(
+                gpu, shown, frame.response, prepared.exposure, frame.luminance_per_unit
+            )
 
     def _make_highlights(
         self, engine: GpuEngine, groups: list[BindGroup], variants: dict[str, str]

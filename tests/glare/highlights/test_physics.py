@@ -37,7 +37,8 @@ def test_slopes_of_a_polygon_are_the_integral(shift):
 
 
 def test_far_from_the_lobe_both_sums_are_one():
-    corners = (*np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]), 7.0, 2.0)
+    square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
+    corners = square + np.array([7.0, 2.0])
     middle = corners.mean(axis=0)
     exact = sum(edge_share(p, q) for p, q in polygon(corners))
     fan = sum(fan_share(p, q, middle) for p, q in polygon(corners))

@@ -18,7 +18,7 @@ def test_mean_square_slope_is_the_stated_one():
 
 def test_what_a_pixel_blurs_is_not_lost():
     waves = make_waves(**SETTINGS, seed=3)
-    across, down = (*STILL, 0.2, 0, 0), (*STILL, 0, 0, 0.5)
+    across, down = STILL + np.array([0.2, 0, 0]), STILL + np.array([0, 0, 0.5])
     slopes, lost = slopes_at(waves, POINTS, across, down, 1.0)
     together = (slopes**2).sum(axis=1).mean() + lost.mean()
     assert together == pytest.approx(0.06**2, rel=0.03)

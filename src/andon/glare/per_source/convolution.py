@@ -151,10 +151,13 @@ def _directions(theta: Float, phi: Float) -> Float:
 
 
 def edge_points(outline: Outline, pieces: int = EDGE_PIECES, /) -> Float:
-    """(pieces, 3) points of the edge, equally far apart, in the source's frame."""
+    """(pieces, 3) points of the edge in the source's frame: dense where it is long, or bends."""
     phi = np.linspace(0, 2 * np.pi, 16 * pieces + 1)
-    points = _directions(outline.radius(phi), phi)
-    walked = np.linalg.norm(np.diff(points, axis=0), axis=1).cumsum()
+    sides = np.diff(_directions(outline.radius(phi), phi), axis=0)
+    heading = np.unwrap(np.arctan2(sides[:, 1], sides[:, 0]))
+    bend = np.abs(np.diff(heading, prepend=heading[-1] - 2 * np.pi))
+    length = np.linalg.norm(sides, axis=1)
+    walked = (length / length.sum() + bend / bend.sum()).cumsum()
     wanted = walked[-1] * np.arange(pieces) / pieces
     phi = np.interp(wanted, np.concatenate([[0], walked]), phi)
     return _directions(outline.radius(phi), phi)

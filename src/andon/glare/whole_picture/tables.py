@@ -136,7 +136,8 @@ def _window_size(places: Float) -> tuple[int, int]:
     # Half a window is that of the box of the spline, brought back to blocks.
     columns = (np.abs(along[..., 1]) + np.abs(along[..., 0])) / area * SUPPORT
     rows = (np.abs(across[..., 0]) + np.abs(across[..., 1])) / area * SUPPORT
-    return int(np.ceil(2 * columns.max())), int(np.ceil(2 * rows.max()))
+    # The shader takes four columns at a time.
+    return 4 * int(np.ceil(columns.max() / 2)), int(np.ceil(2 * rows.max()))
 
 
 def _exact(chart: Chart, places: Float) -> Windows:

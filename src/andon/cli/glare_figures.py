@@ -34,6 +34,9 @@ class FiguresOptions:
     hfov_degrees: Annotated[
         float | None, typer.Option(help="How wide --photo and --leaves see, across.")
     ] = None
+    luminance_scale: Annotated[
+        float | None, typer.Option(metavar="CD_M2", help="Of value 1 of --photo; default: header.")
+    ] = None
     engine: EngineOption = "auto"
 
 

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.cli.examples import example_folder
 from andon.cli.figures.model import Asked, Figure, Panel
 from andon.cli.glare_komorebi import KomorebiOptions
 from andon.cli.komorebi_run import canopy_of, drawn_by
@@ -25,17 +26,25 @@ Rgb = NDArray[np.uint8]
 STILL_SECONDS, FRAME_SECONDS = 0.0, tuple(0.25 * number for number in range(9))
 COLUMNS, SHUTTER_SECONDS = 3, 1 / 30
 STEPS_PER_SECOND, Z = 6.0, 1.8
+# Pixel of the sun behind our own leaves: their middle.
+OWN_SUN_AT = "480,270"
 # Of the picture, each way: needles are too fine for all of it.
 SHOWN = 0.6
 # The printed curve is at its middle at so many times the luminance of the leaves.
-HALF_AMBIENTS = 6.0
+HALF_AMBIENTS = 3.5
 
 
 def draw_komorebi(
-    leaves: Path, hfov_degrees: float | None, asked: Asked, step: Callable[[], None], /
+    leaves: Path | None,
+    hfov_degrees: float | None,
+    asked: Asked,
+    step: Callable[[], None],
+    /,
 ) -> tuple[Figure, ...]:
-    """The figure from a picture of leaves, or a mask of the gaps between them."""
-    canopy = canopy_of(KomorebiOptions(leaves, leaves, hfov_degrees=hfov_degrees))
+    """The figure from a picture of leaves, or a mask of the gaps between them; None: ours."""
+    sun_at = OWN_SUN_AT if leaves is None else None
+    path = leaves or example_folder("komorebi", "leaves.png") / "leaves.png"
+    canopy = canopy_of(KomorebiOptions(path, path, hfov_degrees=hfov_degrees, sun_at=sun_at))
     step()
     eye = asked.eye(ambient_of(canopy))
     flicker = Flicker(asked.seed, Z, STEPS_PER_SECOND, len(canopy))

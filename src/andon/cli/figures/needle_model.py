@@ -27,7 +27,7 @@ Float = NDArray[np.float64]
 Rgb = NDArray[np.uint8]
 Point = tuple[float, float]
 
-# Size in which the figure is drawn; it is brought to that of two panels.
+# Size of its two halves.
 STAR_PX, PLOTS_PX, HEIGHT_PX = 760, 640, 900
 # Lines are drawn larger and scaled down, which makes them smooth.
 FINER = 3
@@ -46,17 +46,14 @@ CHANNELS = (("red", (200, 60, 30)), ("green", (20, 130, 70)), ("blue", (30, 90, 
 
 
 def draw_model(asked: Asked, step: Callable[[], None], /) -> tuple[Figure, ...]:
-    """The figure, as wide as two panels."""
+    """The figure, in one size: it has text."""
     model = NeedleModel()
     eye = replace(asked, glasses="none").eye(AMBIENT_CD_M2)
     star = _star(eye, asked.seed, model)
     sheet = np.concatenate([_sketch(star, model), _plots(model, eye)], axis=1)
     step()
-    width = 2 * asked.width
-    size = width, round(width * sheet.shape[0] / sheet.shape[1])
-    picture = np.asarray(Image.fromarray(sheet).resize(size, Image.Resampling.LANCZOS), np.uint8)
     caption = "number, length and angle are the eye's Gaussian noise; a tent across"
-    panel = Panel("6-needle-model", caption, picture)
+    panel = Panel("6-needle-model", caption, sheet)
     return (Figure("figure-6", "Figure 6.  The model of needles", "フレアラインモデル", (panel,)),)
 
 

@@ -46,13 +46,21 @@ class Photograph:
     warnings: tuple[str, ...]
 
     @classmethod
-    def read(cls, path: Path, hfov_degrees: float | None, width: int, /) -> Photograph:
+    def read(
+        cls,
+        path: Path,
+        width: int,
+        /,
+        *,
+        hfov_degrees: float | None = None,
+        cd_m2_per_unit: float | None = None,
+    ) -> Photograph:
         """From a file, at most `width` pixels wide. Raises `InputError`."""
         picture = read_picture(path)
         stated = None
         if hfov_degrees is not None:
             stated = projected("pinhole", hfov_degrees, picture.shape[1], picture.shape[0])
-        seen = calibrated(picture, view=stated, file=str(path))
+        seen = calibrated(picture, view=stated, cd_m2_per_unit=cd_m2_per_unit, file=str(path))
         light = cleaned(seen.luminance_cd_m2, seen.view, seen.shows).light
         view, warnings = seen.view, seen.warnings
         if view.width > width:

@@ -10,7 +10,6 @@ from rich.console import Console
 from rich.progress import Progress
 
 from andon.cli.console import note
-from andon.cli.examples import example_folder
 from andon.cli.figures.leaves import FRAME_SECONDS, draw_komorebi
 from andon.cli.figures.model import Asked, Draw, Figure
 from andon.cli.figures.needle_model import draw_model
@@ -22,6 +21,7 @@ from andon.cli.glare_figures import FiguresOptions
 from andon.cli.glare_typed import GLASSES, one_of
 from andon.errors import InputError, MachineError
 from andon.files.pictures import write_png
+from andon.observer.presets import WORN
 
 __all__ = ["SHEET", "run"]
 
@@ -59,7 +59,7 @@ def _checked(options: FiguresOptions) -> tuple[Asked, tuple[int, ...]]:
         raise InputError("is no folder", file=options.out, field="--out")
     names = [str(number) for number in STEPS]
     typed = [one_of(part.strip(), names, "--figures") for part in options.figures.split(",")]
-    glasses, dioptres = GLASSES[one_of(options.glasses, list(GLASSES), "--glasses")]
+    glasses, dioptres = WORN[GLASSES[one_of(options.glasses, list(GLASSES), "--glasses")]]
     engine: Any = options.engine
     asked = Asked(options.width, engine, options.age, glasses, dioptres, options.seed)
     return asked, tuple(sorted({int(number) for number in typed}))
@@ -74,13 +74,17 @@ def _draws(
         return draw_street(street_scene(), asked, step)
 
     def leaves(asked: Asked, step: Callable[[], None]) -> tuple[Figure, ...]:
-        own = example_folder("komorebi", "leaves.png") / "leaves.png"
-        return draw_komorebi(options.leaves or own, options.hfov_degrees, asked, step)
+        return draw_komorebi(options.leaves, options.hfov_degrees, asked, step)
 
     known = {4: draw_blooms, 5: draw_needles, 6: draw_model, 7: street, 8: leaves}
     draws: list[tuple[int, Draw]] = [(STEPS[number], known[number]) for number in numbers]
     if options.photo is not None and 7 in numbers:
-        photo = Photograph.read(options.photo, options.hfov_degrees, asked.width)
+        photo = Photograph.read(
+            options.photo,
+            asked.width,
+            hfov_degrees=options.hfov_degrees,
+            cd_m2_per_unit=options.luminance_scale,
+        )
         for warning in photo.warnings:
             note(warning)
         draws.insert(numbers.index(7) + 1, (PHOTO_STEPS, partial(draw_photograph, photo)))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from andon.files.pictures import read_picture, write_exr, write_hdr, write_png
+from requirements import required
 
 from .command import run_andon, run_refused
 
@@ -183,6 +184,20 @@ def test_what_is_no_light_is_counted(capfd, folder):
         (["night.exr", "-o", "nowhere/o.png"], "does not exist"),
         (["night.exr", "-o", "o.gif"], "must end in"),
         (["night.exr", "-o", "o.png", "--report", "r.txt"], "must end in"),
+        (["night.exr", "-o", "o.png", "--evalglare"], "--report"),
+        (
+            [
+                "free.exr",
+                "-o",
+                "o.png",
+                "--evalglare",
+                "--report",
+                "r.json",
+                "--projection",
+                "latlong",
+            ],
+            "fish-eye",
+        ),
         (["missing.exr", "-o", "o.png"], "must exist"),
         (["night.exr", "-o", "o.png", "--camera", "none.toml"], "must exist"),
         (["night.exr", "-o", "o.png", "--camera", "c.toml", "--projection", "pinhole"], "--camera"),
@@ -199,6 +214,16 @@ def test_refusals(capfd, folder, words, said):
     (folder / "axial.hdr").write_bytes(pixels)
     outcome = run_refused(capfd, folder, "glare", *words)
     assert said in outcome
+
+
+def test_radiances_numbers_stand_beside_ours(capfd, folder):
+    required("pyradiance")
+    view = ["--projection", "fisheye", "--hfov-degrees", "180"]
+    glared(capfd, "night.exr", *view, "--evalglare", "--report", "r.json")
+    told = json.loads((folder / "r.json").read_text())
+    assert told["evalglare"]["sources"] == 1
+    assert told["evalglare"]["E_v"] == pytest.approx(told["levels"]["vertical_lux"], rel=0.05)
+    assert told["evalglare"]["ugr"] == pytest.approx(told["ugr"], abs=0.5)
 
 
 def test_a_camera_file_gives_the_angles(capfd, folder):

@@ -82,6 +82,9 @@ class GlareOptions:
         typer.Option(metavar="X,Y", help="Pixel that is looked at; default: straight ahead."),
     ] = None
     report: Annotated[Path | None, typer.Option(help="All numbers, as JSON.")] = None
+    evalglare: Annotated[
+        bool, typer.Option("--evalglare", help="Radiance's numbers beside ours, in the report.")
+    ] = False
     exposure: Annotated[
         str,
         typer.Option(

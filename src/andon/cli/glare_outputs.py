@@ -77,9 +77,10 @@ def sheet(tiles: Sequence[tuple[str, Rgb]]) -> Rgb:
     """Captioned pictures side by side, or one below the other where they are wide."""
     from andon.display.false_colour import contact_sheet
 
-    width = tiles[0][1].shape[1]
-    columns = len(tiles) if width * len(tiles) <= SHEET_PX else max(1, SHEET_PX // width)
-    return contact_sheet(list(tiles), columns=min(columns, len(tiles)))
+    most = max(1, SHEET_PX // tiles[0][1].shape[1])
+    # As many rows as that takes, evenly filled.
+    rows = -(-len(tiles) // most)
+    return contact_sheet(list(tiles), columns=-(-len(tiles) // rows))
 
 
 def write_light(

@@ -28,9 +28,10 @@ def run(options: GlareOptions) -> None:
     ages = _check(options)
     seen = _read(options)
     results = _results(options, seen, ages)
+    check = _checked(results[0]) if options.evalglare else None
     for warning in (*seen.warnings, *results[0].warnings):
         note(warning)
-    _write(options, seen, results)
+    _write(options, seen, results, check)
     for line in _told(results[-1]):
         note(line)
     print(options.out)
@@ -56,9 +57,15 @@ def _check(options: GlareOptions) -> tuple[float, ...]:
         )
     if options.veil_map is not None and len(ages) > 1:
         raise InputError("is of one eye: give one age", field="--veil-map")
+    if options.evalglare and (options.report is None or options.gaze is not None):
+        raise InputError(
+            "goes into the report, of an eye that looks straight ahead",
+            field="--evalglare",
+            remedy="name a --report, and leave --gaze out",
+        )
     one_of(options.renderer, RENDERERS, "--renderer")
     model_of(options.model)
-    eye_of(options, ages[0], None)
+    eye_of(options, min(ages), None)
     exposure_of(options.exposure)
     return ages
 
@@ -127,12 +134,12 @@ def _level(seen: Calibrated) -> float | None:
     return background_luminance(light[shows], solid[shows])
 
 
-def _write(options: GlareOptions, seen: Calibrated, results: list[GlareResult]) -> None:
+def _write(options: GlareOptions, seen: Calibrated, results: list[GlareResult], check: Any) -> None:
     from andon.cli.glare_outputs import write_light, write_report, write_veil
 
     first = results[0]
     map_file = None if options.veil_map is None else options.veil_map.name
-    reports = [_report(result, seen, map_file) for result in results]
+    reports = [_report(result, seen, map_file) | (check or {}) for result in results]
     if options.out.suffix.lower() in LIGHT:
         light = first.glare if options.glare_only else first.picture
         write_light(options.out, light, first, seen, additive=options.glare_only)
@@ -162,6 +169,19 @@ def _write_picture(options: GlareOptions, seen: Calibrated, results: list[GlareR
             f"exposure {scale:.4g} per cd/m²"
             + (", of the log mean" if seen.clipped is None else "")
         )
+
+
+def _checked(result: GlareResult) -> dict[str, Any]:
+    """What Radiance's evalglare says of the same light."""
+    from andon.glare.numbers.evalglare import evalglare
+    from andon.glare.report import rounded
+    from andon.quantities import photometric
+
+    threshold = result.numbers.discomfort.threshold_cd_m2
+    light = photometric(result.pixels.light)
+    found = evalglare(light, result.view, threshold_cd_m2=threshold)
+    values = {name: rounded(value) for name, value in found.values.items()}
+    return {"evalglare": {"sources": found.sources, "threshold_cd_m2": rounded(threshold)} | values}
 
 
 def _report(result: GlareResult, seen: Calibrated, map_file: str | None) -> Any:

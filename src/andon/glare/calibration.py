@@ -108,7 +108,7 @@ def calibrated(
             "nothing says what the picture's 1 is in cd/m²: luminances are relative; state "
             "--luminance-scale"
         )
-    if picture.encoding == "srgb":
+    if white is not None:
         warnings.append(
             f"{int(np.count_nonzero(white))} pixels are at the white of an 8- or 16-bit picture: "
             "what is brighter there is lost, and its glare is too weak"

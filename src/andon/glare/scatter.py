@@ -60,7 +60,7 @@ def scatter_all(light: Float, view: View, kernel: Kernel, engine: EngineName, /)
     """Scatters all light (H, W, 3), finite and ≥ 0, of a picture of `view`."""
     plan = plan_whole(view, kernel)
     leaves = resolved(plan)
-    share = np.maximum(leaves, kernel.share)
+    share: Float = np.maximum(leaves, kernel.share)
     if engine == "gpu" or (engine == "auto" and _has_gpu()):
         return _summed(light, _glare_on_gpu(light, plan), share, view, kernel, "gpu")
     glare = veil(light, plan) + (share - leaves)[..., None] * light
@@ -71,7 +71,7 @@ def scatter_sources(light: Float, view: View, kernel: Kernel, found: FoundSource
     """Scatters the light of the sources `found` in (H, W, 3); all other light stays."""
     settings = PerSource(least_cd_m2=UNSEEN * found.ambient_cd_m2)
     spread = veil_of_sources(found.simplified(), view, kernel, settings=settings)
-    share = kernel.share * (found.labels > 0)
+    share = np.where(found.labels > 0, kernel.share, 0.0)
     return _summed(light, spread, share, view, kernel, "reference")
 
 

@@ -76,9 +76,9 @@ def radiance_view(line: str, width: int, height: int, /, *, file: str = "") -> R
             )
     cx = (width - 1) / 2 - values["-vs"] * width
     cy = (height - 1) / 2 + values["-vl"] * height
-    focal = [_focal(kind, side, angle) for side, angle in ((width, across), (height, up))]
+    fx, fy = _focal(kind, width, across), _focal(kind, height, up)
     name = "pinhole" if kind == "v" else "fisheye"
-    return RadianceView(View(name, width, height, *focal, cx, cy), hemispherical=kind == "h")
+    return RadianceView(View(name, width, height, fx, fy, cx, cy), hemispherical=kind == "h")
 
 
 def line_of_view(view: View, /) -> str | None:

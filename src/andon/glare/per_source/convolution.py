@@ -212,9 +212,9 @@ def _solid_angle(edge: Float) -> float:
 def _frames(points: Float) -> tuple[Float, Float]:
     """Unit vectors (n, 3) perpendicular to `points` and to each other."""
     helper = np.where(np.abs(points[:, :1]) < 0.9, [1.0, 0, 0], [0, 1.0, 0])
-    right = np.cross(helper, points)
+    right = np.asarray(np.cross(helper, points), np.float64)
     right /= np.linalg.norm(right, axis=-1, keepdims=True)
-    return right, np.cross(points, right)
+    return right, np.asarray(np.cross(points, right), np.float64)
 
 
 def _area_nodes(outline: Outline, along: int, around: int) -> tuple[Float, Float]:

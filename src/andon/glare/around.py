@@ -16,7 +16,7 @@ from andon.glare.needles.model import Needles, Which
 from andon.glare.per_source.halos import halo_table
 from andon.observer.spread.model import Eye
 
-__all__ = ["Around", "around", "halo_share"]
+__all__ = ["Around", "around"]
 
 Float = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ def around(
     if kernel.spread.halo_per_sr is not None and len(sources):
         weights = gate(luminance_cd_m2, ambient_cd_m2, contrast=contrast)
         weights = weights * np.array([_ring_seen(source) for source in sources])
-        taken += weights[:, None] * halo_share(kernel)
+        taken += weights[:, None] * _halo_share(kernel)
     stars: list[Needles] = []
     if needles is not None:
         stars = [
@@ -85,7 +85,7 @@ def _ring_seen(source: Source) -> float:
     return float(np.clip((RING_LOST_DEGREES - radius) / span, 0, 1))
 
 
-def halo_share(kernel: Kernel, /) -> Float:
+def _halo_share(kernel: Kernel, /) -> Float:
     """(3,) share of a point's light that its ring holds."""
     ring = halo_table(kernel.spread)
     theta = np.linspace(0, ring.end, len(ring.values))

@@ -72,7 +72,8 @@ def test_glow_stands_for_glare(engine, tmp_path):
 def test_needles_are_of_one_eye(engine, tmp_path):
     """Other eyes have other needles and the same bloom; all of it is light of the bulb."""
     observer = {"pupil_mm": 6.0}
-    tables = {"lamp": [BULB | {"flux_lm": 2000.0}], "observer": observer}
+    bulb = BULB | {"flux_lm": 100.0, "visible_radius_m": 0.01}
+    tables = {"lamp": [bulb], "observer": observer}
 
     def glare(**settings):
         lit = room(tmp_path, **tables, glare={"model": "cie135", "halo": False, **settings})
@@ -114,3 +115,25 @@ def test_keys_of_glare_count_where_there_is_glare(tmp_path):
     assert prepare(room(tmp_path, **stated)).ignored == ()
     ignored = prepare(room(tmp_path, glare=None, **stated)).ignored
     assert set(ignored) == {"observer.glasses", "atmosphere.mist"}
+
+
+def test_highlights_have_needles_unless_they_are_not_to(engine, tmp_path):
+    """A lamp behind the camera, mirrored in a metal panel before it."""
+    from worlds import block, write_obj
+
+    write_obj(tmp_path / "panel.obj", block((0.5, 0.4, 0.02), (0, 0, -1.2)))
+    panel = {"mesh": "panel.obj", "highlights": "cook-torrance", "metallic": 1, "roughness": 0.1}
+    lamp = {
+        "kind": "sphere", "position": [0.0, 0.0, 0.6], "radius_m": 0.02,
+        "luminance_cd_m2": 2e6,
+    }  # fmt: skip
+    tables = {"lamp": [lamp], "object": [panel], "observer": {"pupil_mm": 6.0}}
+
+    def glare(**settings):
+        lit = room(tmp_path, **tables, glare={"model": "cie135", "halo": False, **settings})
+        return np.asarray(Renderer(lit, engine).render().glare.cd_m2, float)
+
+    seen, bloom = glare(), glare(needles=False)
+    without = glare(highlights=False)
+    assert seen.sum() > 1.002 * bloom.sum()
+    np.testing.assert_allclose(without, bloom, rtol=1e-3, atol=1e-3 * bloom.max())

@@ -55,7 +55,7 @@ def _against_numpy(outline: Outline, count: int) -> Duel:
     target.write(np.zeros((HEIGHT, WIDTH, 4)))
     ours()
     expected = np.minimum(peer(), 65504.0)
-    same = np.abs(target.read()[..., :3] - expected) <= AGREED * expected
+    same: Any = np.abs(target.read()[..., :3] - expected) <= AGREED * expected
     agreement = float(np.mean(same))
     return Duel(ours, peer, agreement, 0.999, gpu.adapter_name, peer_repeats=1)
 

@@ -40,6 +40,7 @@ class SceneGlare:
     ----------
     eye, kernel : whose eye, and how it scatters.
     contrast : luminance of a source over the ambient from which it has halo and needles.
+    highlights : what is mirrored has halo and needles, too.
     needles : constants; None: no needles.
     seed : pattern of the needles.
     plans : of the whole picture, by view; none where only sources are scattered.
@@ -48,6 +49,7 @@ class SceneGlare:
     eye: Eye
     kernel: Kernel
     contrast: float
+    highlights: bool
     needles: NeedleModel | None
     seed: int
     plans: Mapping[str, WholePlan]
@@ -119,6 +121,7 @@ def glare_of(
         eye,
         kernel,
         table.highlight_contrast,
+        table.highlights,
         replace(NeedleModel(), contrast=table.highlight_contrast) if table.needles else None,
         scene.scene.seed if table.seed is None else table.seed,
         {name: plan_whole(frame.view, kernel) for name, frame in frames.items()} if whole else {},

@@ -53,28 +53,39 @@ class GlareView:
         light: Texture,
         geometry: Geometry,
         real_linear: NDArray[Any] | None = None,
+        mirrored: Texture | None = None,
     ) -> None:
-        """`light` rgba16float; `real_linear` (H, W, 3): what glares by itself, see-through.
+        """Makes all of it.
 
-        `geometry` hides lamps.
+        Parameters
+        ----------
+        light : rgba16float.
+        geometry : what hides lamps.
+        real_linear : (H, W, 3) what glares by itself, behind a see-through display.
+        mirrored : highlights alone, cd/m².
         """
         view, per_unit = frame.view, frame.luminance_per_unit
         self.gpu, self.glare, self.view = gpu, glare, view
         self.seen = make_texture(gpu, "rgba16float", view.width, view.height, label="seen")
         self.found = LiveSources(0.0)
-        self._virtual: _Virtual | None = None
+        self._virtual: _Without | None = None
+        self._shining: _Without | None = None
         self._sharp = _Sharp(gpu, light, self.seen)
         if real_linear is not None:
-            self._virtual = _Virtual(gpu, light, real_linear)
+            self._virtual = _Without(gpu, light, _picture(gpu, real_linear))
             light = self._virtual.light
-        self._find = SourceStage(gpu, light, glare.finder(view), per_unit)
+        shining = light
+        if mirrored is not None and not glare.highlights:
+            self._shining = _Without(gpu, light, mirrored, 1 / per_unit)
+            shining = self._shining.light
+        self._find = SourceStage(gpu, shining, glare.finder(view), per_unit)
         self._veil: WholePictureStage | None = None
         if glare.plans:
             self._veil = WholePictureStage(gpu, light, self.seen, glare.plans[view.name])
         self._stars = PerSourceStage(gpu, view, MOST_SOURCES, luminance_per_unit=per_unit)
         self._unpictured = UnpicturedLamps(geometry, HALF_MOST * per_unit)
         self._lamps = PerSourceStage(gpu, view, MAX_LAMPS, luminance_per_unit=per_unit)
-        self._taken = _Taken(gpu, light, self.seen, per_unit)
+        self._taken = _Taken(gpu, shining, self.seen, per_unit)
         self._needles: NeedleStage | None = None
         if glare.needles is not None:
             most = MOST_SOURCES * glare.needles.most
@@ -84,8 +95,9 @@ class GlareView:
 
     def encode_sources(self, encoder: Any) -> None:
         """Records what `update` reads."""
-        if self._virtual is not None:
-            self._virtual.encode(encoder)
+        for part in (self._virtual, self._shining):
+            if part is not None:
+                part.encode(encoder)
         self._find.encode(encoder)
 
     def update(self, lamps: Sequence[Lamp]) -> None:
@@ -136,18 +148,25 @@ class GlareView:
             self._needles.encode(encoder, target)
 
 
-class _Virtual:
-    """What a see-through display adds to the real light."""
+def _picture(gpu: Gpu, linear: NDArray[Any]) -> Texture:
+    """A picture (H, W, 3) on the GPU."""
+    height, width = linear.shape[:2]
+    made = make_texture(gpu, "rgba16float", width, height, label="real")
+    values = np.zeros((height, width, 4))
+    values[..., :3] = np.clip(linear, 0, HALF_MOST)
+    made.write(values)
+    return made
 
-    def __init__(self, gpu: Gpu, light: Texture, real_linear: NDArray[Any]) -> None:
-        size = (light.width, light.height)
-        real = make_texture(gpu, "rgba16float", *size, label="real")
-        codes = np.zeros((*real_linear.shape[:2], 4))
-        codes[..., :3] = np.clip(real_linear, 0, HALF_MOST)
-        real.write(codes)
-        self.light = make_texture(gpu, "rgba16float", *size, label="virtual")
-        group = [bind_group(gpu, {0: ("float", light.view), 1: ("float", real.view)}, "light")]
-        self._pass = FullscreenPass(gpu, SHARP, "virtual_light", [self.light.format], group)
+
+class _Without:
+    """Light of a picture that is not of another one: what a display adds, what is not mirrored."""
+
+    def __init__(self, gpu: Gpu, light: Texture, other: Texture, unit: float = 1.0) -> None:
+        self.light = make_texture(gpu, "rgba16float", light.width, light.height, label="without")
+        group = [bind_group(gpu, {0: ("float", light.view), 1: ("float", other.view)}, "light")]
+        scale = {"andon/glare/scale.wgsl": f"const OTHER_UNIT: f32 = {unit:.9g}f;"}
+        formats = [self.light.format]
+        self._pass = FullscreenPass(gpu, SHARP, "light_without", formats, group, variants=scale)
 
     def encode(self, encoder: Any) -> None:
         self._pass.encode(encoder, [self.light.view])

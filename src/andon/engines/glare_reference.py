@@ -24,10 +24,22 @@ Float = NDArray[np.float64]
 
 
 def glare_seen(
-    own: SceneGlare, light: Float, view: View, lamps: Sequence[Lamp], hiding: UnpicturedLamps, /
+    own: SceneGlare,
+    light: Float,
+    view: View,
+    lamps: Sequence[Lamp],
+    hiding: UnpicturedLamps,
+    mirrored: Float | None,
+    /,
 ) -> tuple[Float, Float]:
-    """What is left of `light` (H, W, 3) cd/m² where it was, and what glare adds."""
-    found = own.finder(view).find(survey(light), lambda rows, columns: light[rows, columns])
+    """What is left of `light` (H, W, 3) cd/m² where it was, and what glare adds.
+
+    `mirrored` (H, W, 3) is the part of it that is highlights.
+    """
+    shining = light
+    if mirrored is not None and not own.highlights:
+        shining = np.maximum(light - mirrored, 0)
+    found = own.finder(view).find(survey(shining), lambda rows, columns: shining[rows, columns])
     found, unpictured = hiding.split(lamps, found, view)
     seen, sources = own.around(found, view), [source.rounded() for source in found.sources]
     added = draw(seen.needles, view) + veil_of_sources(unpictured, view, own.kernel)
@@ -35,8 +47,8 @@ def glare_seen(
         weights = seen.halo_weights.tolist()
         added += halos_of_sources(sources, view, own.kernel, own.ring, weights=weights)
     share = taken_share(found, seen) + own.bloom_share
-    least = gate(photometric(light), found.ambient_cd_m2, contrast=own.contrast)
-    taken = light * share * least[..., None]
+    least = gate(photometric(shining), found.ambient_cd_m2, contrast=own.contrast)
+    taken = shining * share * least[..., None]
     if not own.plans:
         return light - taken, added + veil_of_sources(sources, view, own.kernel)
     whole = scattered(light, own.plans[view.name])

@@ -21,11 +21,8 @@ from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import NO_LAMPS, PROBES, taking
 from andon.glare.highlights import stage as highlights
-from andon.glare.highlights.contrast import AmbientLevel
 from andon.glare.highlights.stage import HighlightStage
 from andon.glare.highlights.sum import highlights_of_lamps
-from andon.glare.highlights.tile_stage import TileStage
-from andon.glare.highlights.tiles import Highlight
 from andon.glass.layers import Layered
 from andon.glow.stage import GlowStage
 from andon.gpu.bindings import BindGroup, bind_group
@@ -77,7 +74,6 @@ class _View:
             self.glow = GlowStage(gpu, alone, self.luminance, prepared.glow, view)
             self.filtered = make_texture(gpu, alone.format, view.width, view.height, label="glow")
             self.hide = None if self.glass is None else self.glass.hiding(alone)
-        self._make_display(gpu, prepared)
         own = {0: ("uint", seen.texture.view), 1: ("uniform", seen.view_buffer)}
         groups = [
             bind_group(gpu, own | self.composite.resources, "frame"),
@@ -93,6 +89,7 @@ class _View:
             "variants": gbuffer.projection_variant(view) | engine.variants,
         }
         self._make_highlights(engine, groups, options["variants"])
+        self._make_display(gpu, prepared)
         entry = self._entry_point(prepared)
         self.relit = FullscreenPass(gpu, FRAME, entry, ["rgba16float"], groups, **options)
         # Half floats end at 65504, sunlight does not, and this picture is for machines.
@@ -110,7 +107,9 @@ class _View:
         if prepared.glare is not None:
             real = None if through is None or unlit is None else ost.real_light(unlit, through)
             hiding = prepared.surface.shadow_casters
-            self.glare = GlareView(gpu, prepared.glare, frame, self.luminance, hiding, real)
+            mirrored = None if self.highlights is None else self.highlights.alone
+            light = self.luminance
+            self.glare = GlareView(gpu, prepared.glare, frame, light, hiding, real, mirrored)
             shown = self.glare.seen
         self.display: DisplayStage | OstStage
         if unlit is not None:
@@ -129,14 +128,6 @@ class _View:
         gpu, frame = engine.gpu, self.frame
         own = engine.finishes, groups, STRUCTS, variants | {highlights.SUM: engine.lamps_mirrored}
         self.highlights = highlights.HighlightStage(gpu, frame.view, *own)
-        self.tiles = TileStage(
-            gpu,
-            frame.view,
-            self.highlights.alone,
-            self.luminance,
-            self.surface.surface.view_buffer,
-            frame.luminance_per_unit,
-        )
 
     def changed_rectangles(self, moment: Moment) -> list[Rectangle]:
         """Where the light of probes has to be drawn anew: all of it once, then what moved."""
@@ -248,21 +239,6 @@ class GpuEngine:
             self.encoder, light.luminance.view, seen, moment.lamps, frame.luminance_per_unit
         )
         return light.luminance
-
-    def find_highlights(
-        self, frame: CameraFrame, luminance: Texture, moment: Moment, gate: float
-    ) -> tuple[AmbientLevel, list[Highlight]] | None:
-        """The ambient level and the highlights in what `compose` gave; None: nothing mirrors.
-
-        Waits for the device twice.
-        """
-        own, view = self.prepared.highlights, self._views[frame.view.name]
-        if own is None or view.highlights is None:
-            return None
-        self.finish()
-        middles = moment.object_middles
-        lux = own.probe_lux(self.prepared.probes, self.prepared.surface, middles)
-        return view.tiles.find(lux, gate)
 
     def read_highlights(self, frame: CameraFrame) -> Luminance | None:
         """Mirrored lamps alone, as they were drawn last."""

@@ -18,16 +18,8 @@ from andon.engines.glass import SceneGlass
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import lampless_pixels, lit_pixels
-from andon.glare.highlights.contrast import AmbientLevel
 from andon.glare.highlights.facets import Facets
 from andon.glare.highlights.reference import Mirrored, facing_lux, mirrored_picture
-from andon.glare.highlights.tiles import (
-    Highlight,
-    highlights_of_tiles,
-    light_tiles,
-    survey_tiles,
-    threshold_cd_m2,
-)
 from andon.glass import reference as glass
 from andon.glass.backdrops.model import SceneOfView
 from andon.glass.backdrops.paper import preblurred, with_blurred_pictures
@@ -142,20 +134,6 @@ class ReferenceEngine:
             frozenset() if probes is None else probes.captured,
         )
 
-    def find_highlights(
-        self, frame: CameraFrame, luminance: Luminance, moment: Moment, gate: float
-    ) -> tuple[AmbientLevel, list[Highlight]] | None:
-        """The ambient level and the highlights in what `compose` gave; None: nothing mirrors."""
-        own, found, view = self.prepared.highlights, self._mirrored, frame.view
-        if own is None or found is None:
-            return None
-        survey = survey_tiles(view, np.asarray(luminance.cd_m2, np.float64), found.lamps_cd_m2)
-        middles = moment.object_middles
-        lux = own.probe_lux(self.prepared.probes, self.prepared.surface, middles)
-        ambient = survey.ambient(lux, gate)
-        light = light_tiles(view, found.lamps_cd_m2, threshold_cd_m2(ambient, gate))
-        return ambient, highlights_of_tiles(light, survey, ambient, view, gate)
-
     def read_highlights(self, frame: CameraFrame) -> Luminance | None:
         """Mirrored lamps alone, of the view that was drawn last."""
         found = self._mirrored
@@ -263,7 +241,8 @@ class ReferenceEngine:
             unlit = composite.unlit_linear(frame, self.prepared.ambient)
             real = frame.luminance_per_unit * ost.real_light(unlit, through)
             light = np.maximum(all_light - real, 0)
-        stays, added = glare_seen(own, light, frame.view, moment.lamps, self._unpictured)
+        mirrored = None if self._mirrored is None else self._mirrored.lamps_cd_m2
+        stays, added = glare_seen(own, light, frame.view, moment.lamps, self._unpictured, mirrored)
         self._glare = Luminance(added, word)
         return Luminance((stays if through is None else all_light) + added, word)
 

@@ -136,7 +136,7 @@ def glare_of_picture(
     found = find_sources(pixels.light, view, clipped=clipped)
     light = pixels.light
     if renderer == "per-source":
-        spread_out = scatter_sources(light, view, kernel, found)
+        spread_out = scatter_sources(light, view, kernel, found, engine)
     else:
         spread_out = scatter_all(light, view, kernel, engine)
     stars = stars_of(found, eye, view, kernel, seed=seed, which=which) if with_stars else None

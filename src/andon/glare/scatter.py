@@ -4,7 +4,7 @@
 renderer      scatters                       reference                    gpu
 ============= ============================== ============================ ========================
 whole-picture all light                      `whole_picture.reference`    `whole_picture.stage`
-per-source    that of the sources found      `per_source.reference`       (as the reference)
+per-source    that of the sources found      `per_source.reference`       `per_source.stage`
 ============= ============================== ============================ ========================
 
 The GPU's veil comes in half floats, brought to their range first: 0.05 % of the veil. What stays,
@@ -20,9 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.glare.kernel import Kernel
+from andon.glare.model import Source
 from andon.glare.per_source.model import PerSource
 from andon.glare.per_source.reference import veil_of_sources
-from andon.glare.sources.find import FoundSources
+from andon.glare.sources.find import SHAPED, FoundSources
 from andon.glare.whole_picture.plan import WholePlan, plan_whole
 from andon.glare.whole_picture.reference import resolved, veil
 from andon.spaces import View
@@ -59,20 +60,27 @@ class Scatter:
 def scatter_all(light: Float, view: View, kernel: Kernel, engine: EngineName, /) -> Scatter:
     """Scatters all light (H, W, 3), finite and ≥ 0, of a picture of `view`."""
     plan = plan_whole(view, kernel)
+    on_gpu = engine == "gpu" or (engine == "auto" and _has_gpu())
+    spread = _veil_on_gpu(light, plan) if on_gpu else veil(light, plan)
+    # What a pixel scatters within itself stays there, and veils it none the less.
     leaves = resolved(plan)
     share: Float = np.maximum(leaves, kernel.share)
-    if engine == "gpu" or (engine == "auto" and _has_gpu()):
-        return _summed(light, _glare_on_gpu(light, plan), share, view, kernel, "gpu")
-    glare = veil(light, plan) + (share - leaves)[..., None] * light
-    return _summed(light, glare, share, view, kernel, "reference")
+    glare = spread + (share - leaves)[..., None] * light
+    return _summed(light, glare, share, view, kernel, "gpu" if on_gpu else "reference")
 
 
-def scatter_sources(light: Float, view: View, kernel: Kernel, found: FoundSources, /) -> Scatter:
+def scatter_sources(
+    light: Float, view: View, kernel: Kernel, found: FoundSources, engine: EngineName, /
+) -> Scatter:
     """Scatters the light of the sources `found` in (H, W, 3); all other light stays."""
     settings = PerSource(least_cd_m2=UNSEEN * found.ambient_cd_m2)
-    spread = veil_of_sources(found.simplified(), view, kernel, settings=settings)
+    sources = found.simplified()
     share = np.where(found.labels > 0, kernel.share, 0.0)
-    return _summed(light, spread, share, view, kernel, "reference")
+    if engine == "gpu" or (engine == "auto" and _has_gpu()):
+        drawn = _sources_on_gpu(sources, view, kernel, settings)
+        return _summed(light, drawn, share, view, kernel, "gpu")
+    drawn = veil_of_sources(sources, view, kernel, settings=settings)
+    return _summed(light, drawn, share, view, kernel, "reference")
 
 
 def _summed(
@@ -91,8 +99,31 @@ def _has_gpu() -> bool:
     return adapter_summary() is not None
 
 
-def _glare_on_gpu(light: Float, plan: WholePlan) -> Float:
-    """(H, W, 3) what is added."""
+def _sources_on_gpu(
+    sources: tuple[Source, ...], view: View, kernel: Kernel, settings: PerSource
+) -> Float:
+    """(H, W, 3) the veil of sources."""
+    from andon.glare.per_source.stage import PerSourceStage
+    from andon.gpu.device import open_gpu
+    from andon.gpu.textures import make_texture
+
+    gpu = open_gpu()
+    # A uniform source veils nothing more than it is bright itself.
+    brightest = max((float(source.luminance_cd_m2.max()) for source in sources), default=1.0)
+    per_unit = max(brightest, 1e-30) / BRIGHTEST
+    target = make_texture(gpu, "rgba16float", view.width, view.height, label="veil")
+    stage = PerSourceStage(
+        gpu, view, max(1, len(sources)), outlines=SHAPED, luminance_per_unit=per_unit
+    )
+    stage.update(sources, kernel, settings=settings)
+    encoder = gpu.device.create_command_encoder()
+    stage.encode(encoder, target)
+    gpu.device.queue.submit([encoder.finish()])
+    return target.read()[..., :3].astype(np.float64) * per_unit
+
+
+def _veil_on_gpu(light: Float, plan: WholePlan) -> Float:
+    """(H, W, 3) what comes to each pixel from others."""
     from andon.glare.whole_picture.stage import WholePictureStage
     from andon.gpu.device import open_gpu
     from andon.gpu.textures import make_texture

@@ -110,7 +110,7 @@ def polygon(corners_radians: ArrayLike, name: str = "polygon", /) -> Outline:
         raise InputError("must be seen whole from its centroid", field=f"outline.{name}")
     width = np.ptp(corners, axis=0)
     count = _count(float(width.max()), float(width.min()))
-    return Outline(_reach(about, ahead, np.arange(count) * (2 * np.pi / count)), name)
+    return Outline(_reach(about, ahead, _turns(count)), name)
 
 
 def spherical_outline(corners: Float, /) -> Outline:
@@ -121,7 +121,7 @@ def spherical_outline(corners: Float, /) -> Outline:
     flat = corners[:, :2] / corners[:, 2:]  # great circles are straight in the gnomonic plane
     width = np.ptp(flat, axis=0)
     count = _count(float(width.max()), max(float(width.min()), 1e-9))
-    phi = np.arange(count) * (2 * np.pi / count)
+    phi = _turns(count)
     reach = np.arctan(_reach(flat, np.roll(flat, -1, axis=0), phi))
     # A direction from which the polygon is all to one side sees nothing to the other.
     return Outline(np.maximum(reach, 1e-3 * reach.max()), "polygon")
@@ -162,8 +162,12 @@ def _around(a: float, b: float) -> tuple[Float, Float]:
     """cos φ and sin φ at equal steps."""
     _positive(a=a, b=b)
     count = _count(max(a, b), min(a, b))
-    phi = np.arange(count) * (2 * np.pi / count)
+    phi = _turns(count)
     return np.cos(phi), np.sin(phi)
+
+
+def _turns(count: int) -> Float:
+    return 2 * np.pi * np.arange(count, dtype=np.float64) / count
 
 
 def _count(long: float, short: float) -> int:

@@ -170,21 +170,3 @@ def test_ripples_move_and_are_the_same_again():
     )
     np.testing.assert_array_equal(first, again)
     assert np.abs(first - later).max() > 10
-
-
-def test_both_engines_find_the_same_sources(gpu):
-    scene = prepared(Finish(alpha=(0.02, 0.02)), [LAMPS["sphere"], SUN])
-    results = []
-    for engine in ("reference", "gpu"):
-        renderer = Renderer(scene, engine)
-        luminance = renderer.draw()[2]
-        frame, moment = scene.frames["mono"], scene.at(0.0)
-        results.append(renderer._engine.find_highlights(frame, luminance, moment, 40.0))
-    (level_a, ours), (level_b, theirs) = results
-    assert level_a.origin == level_b.origin == "picture"
-    assert level_b.cd_m2 == pytest.approx(level_a.cd_m2, rel=0.01)
-    assert len(ours) == len(theirs) >= 1
-    for one, other in zip(ours, theirs, strict=True):
-        assert other.glares == one.glares
-        assert other.source.illuminance_lux == pytest.approx(one.source.illuminance_lux, rel=0.03)
-        assert np.linalg.norm(other.source.direction - one.source.direction) < 2e-3

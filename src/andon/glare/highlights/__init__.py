@@ -1,8 +1,8 @@
-"""Lamps mirrored in virtual metal and water, and which of these highlights glare.
+"""Lamps mirrored in virtual metal and water.
 
 What
     Luminance in cd/m² that smooth virtual surfaces send to the eye from every lamp, shadowed as
-    its diffuse light is; the sources of glare that the bright parts of it are.
+    its diffuse light is.
 Models
     ``cook-torrance`` (GGX, Smith's height-correlated masking, Schlick's Fresnel term),
     ``anisotropic`` (the same with two roughnesses), ``phong`` (the glare paper's I·I_s·cosⁿα,
@@ -17,7 +17,8 @@ Rest
     or E/π, times the surface's albedo for its direction. Nothing else of the scene is mirrored:
     neither things nor the photograph.
 Gate
-    Glare has a halo and needles where a highlight is 40 times its surround or more (`contrast`).
+    A highlight is light of the picture like any other: it has halo and needles where it is 40
+    times the ambient level or more (`andon.glare.sources.live`), and is white below.
 
 Sources: Cook and Torrance 1982; Walter et al. 2007; Heitz 2014; Schlick 1994; the glare paper,
 sections on metal and water.

@@ -101,10 +101,11 @@ def disc_veil(kernel: Kernel, radius: float, theta: Float, /, *, core: bool) -> 
 
 
 @lru_cache(maxsize=8)
-def _dense_at_both_ends(count: int) -> tuple[Float, Float]:
+def _dense_at_both_ends(count: int) -> tuple[Any, Any]:
     """Nodes in (0, 1) and their weights, for functions with a square root at both ends."""
     u, weight = np.polynomial.legendre.leggauss(count)
-    return 0.5 * (1 + np.sin(np.pi / 2 * u)), np.pi / 4 * np.cos(np.pi / 2 * u) * weight
+    nodes: Any = 0.5 * (1 + np.sin(np.pi / 2 * u))
+    return nodes, np.pi / 4 * np.cos(np.pi / 2 * u) * weight
 
 
 def _half_arc(psi: Float, theta: Float, radius: float) -> Float:
@@ -159,8 +160,8 @@ def edge_points(outline: Outline, pieces: int = EDGE_PIECES, /) -> Float:
     length = np.linalg.norm(sides, axis=1)
     walked = (length / length.sum() + bend / bend.sum()).cumsum()
     wanted = walked[-1] * np.arange(pieces) / pieces
-    phi = np.interp(wanted, np.concatenate([[0], walked]), phi)
-    return _directions(outline.radius(phi), phi)
+    found = np.asarray(np.interp(wanted, np.concatenate([[0], walked]), phi), np.float64)
+    return _directions(outline.radius(found), found)
 
 
 def _along_edge(kernel: Kernel, edge: Float, points: Float, *, core: bool) -> Float:
@@ -187,15 +188,16 @@ def _piece(kernel: Kernel, a: Sequence[Any], b: Sequence[Any], *, core: bool) ->
 
     On a great circle cot ψ is a combination of sin β and cos β.
     """
-    turn = np.angle(np.conj(a[0]) * b[0])
-    total, cot = 0, 0
+    turn: Float = np.angle(np.conj(a[0]) * b[0])
+    total: Any = 0
+    cot: Any = 0
     for seen, cosine in (a, b):
         sine = np.maximum(np.abs(seen), 1e-30)
         cot = cot + cosine / sine
         total = total + ring_integral(kernel, sine / np.maximum(1 + cosine, 1e-12), core=core)
     cot /= np.maximum(2 * np.cos(turn / 2), 1e-12)
-    middle = np.sqrt(1 + cot * cot) + np.abs(cot)
-    middle = np.where(cot > 0, 1 / middle, middle)
+    steep: Float = np.sqrt(1 + cot * cot) + np.abs(cot)
+    middle: Float = np.where(cot > 0, 1 / steep, steep)
     return (total + 4 * ring_integral(kernel, middle, core=core)) / 6 * turn, turn
 
 
@@ -210,17 +212,17 @@ def _solid_angle(edge: Float) -> float:
 def _frames(points: Float) -> tuple[Float, Float]:
     """Unit vectors (n, 3) perpendicular to `points` and to each other."""
     helper = np.where(np.abs(points[:, :1]) < 0.9, [1.0, 0, 0], [0, 1.0, 0])
-    right = np.cross(helper, points)
+    right = np.asarray(np.cross(helper, points), np.float64)
     right /= np.linalg.norm(right, axis=-1, keepdims=True)
-    return right, np.cross(points, right)
+    return right, np.asarray(np.cross(points, right), np.float64)
 
 
 def _area_nodes(outline: Outline, along: int, around: int) -> tuple[Float, Float]:
     """Points (k, 3) inside and their shares (k,) of the solid angle."""
     u, weight = np.polynomial.legendre.leggauss(along)
-    phi = np.arange(around) * (2 * np.pi / around)
+    phi = np.asarray(np.arange(around) * (2 * np.pi / around), np.float64)
     edge = outline.radius(phi)
     theta = 0.5 * (1 + u)[:, None] * edge
     share = weight[:, None] * edge * np.sin(theta)
     nodes = _directions(theta, np.broadcast_to(phi, theta.shape)).reshape(-1, 3)
-    return nodes, (share / share.sum()).ravel()
+    return nodes, np.asarray(share / share.sum(), np.float64).ravel()

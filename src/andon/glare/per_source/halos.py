@@ -72,5 +72,5 @@ def halo_table(spread: SpreadFunction, /) -> HaloTable:
     ring = spread.halo_per_sr(LOOKED_AT)
     bright = np.nonzero(ring.max(axis=-1) >= LEAST_SHARE * ring.max())[0]
     end = LOOKED_AT[min(int(bright.max()) + 1, len(LOOKED_AT) - 1)]
-    theta = np.linspace(0, end, HALO_STEPS)
+    theta = np.linspace(0, float(end), HALO_STEPS)
     return HaloTable(spread.halo_per_sr(theta), float(np.radians(end)))

@@ -84,7 +84,7 @@ def reach_chord(table: VeilTable, light: float, least: float, /) -> float:
     if least <= 0:
         return 2.0
     edge = np.array([table.edge.max()])
-    m = table.distances(edge, np.arange(COLUMNS))
+    m = table.distances(edge, np.arange(COLUMNS, dtype=np.float64))
     veil = light * table.values.max(axis=0) * table.columns(m, edge)[1]
     bright = np.nonzero(veil >= least)[0]
     last = min(int(bright.max(initial=0)) + 1, COLUMNS - 1)

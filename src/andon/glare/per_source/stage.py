@@ -197,7 +197,8 @@ class PerSourceStage:
         order = np.lexsort((is_local, is_outline))
         records, is_outline, is_local = records[order], is_outline[order], is_local[order]
         instances: list[tuple[int, int]] = []
-        self._draws, whole = [], []
+        self._draws = []
+        whole: list[int] = []
         for shape, of_shape in (("circle", ~is_outline), ("outline", is_outline)):
             everywhere = np.nonzero(of_shape & ~is_local & bloom)[0]
             first = int(everywhere[0]) if len(everywhere) else 0
@@ -205,9 +206,10 @@ class PerSourceStage:
             if len(everywhere):
                 self._draws.append(((shape, "whole_light"), 0, 1))
             ringed = of_shape & np.any(records["halo"] > 0, axis=1)
-            far = [(i, FAR) for i in np.nonzero(of_shape & is_local & bloom)[0]]
-            near = [(i, ring) for i in np.nonzero(of_shape & bloom)[0] for ring in (NEAR, MIDDLE)]
-            near += [(i, HALO) for i in np.nonzero(ringed)[0]]
+            far = [(int(i), FAR) for i in np.nonzero(of_shape & is_local & bloom)[0]]
+            bloomed = np.nonzero(of_shape & bloom)[0]
+            near = [(int(i), ring) for i in bloomed for ring in (NEAR, MIDDLE)]
+            near += [(int(i), HALO) for i in np.nonzero(ringed)[0]]
             for entry, drawn in (("far_light", far), ("near_light", near)):
                 if drawn:
                     self._draws.append(((shape, entry), len(instances), len(drawn)))

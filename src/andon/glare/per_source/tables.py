@@ -112,8 +112,9 @@ class VeilTable:
     def distances(self, edge: Float, columns: Float, /) -> Float:
         """m of `columns` where the edge is at `edge`, broadcast."""
         inside = self._inside(edge) * (1 - columns / EDGE)
-        steps = np.expm1(np.linspace(0, np.log1p(2 / self.step), 4 * COLUMNS))
-        outside = np.interp(columns - EDGE, self._outside(steps), steps)
+        logs = np.linspace(0, float(np.log1p(2 / self.step)), 4 * COLUMNS)
+        steps = np.asarray(np.expm1(logs), np.float64)
+        outside = np.asarray(np.interp(columns - EDGE, self._outside(steps), steps), np.float64)
         beyond = np.where(columns < EDGE, 1 - 2 ** np.maximum(inside, 0), outside)
         return np.maximum(edge + self.step * beyond, self.frame.focus)
 
@@ -235,8 +236,9 @@ def _rows(frame: Confocal, edge: Float, least: Float) -> Float:
     width, whole = min(CORNER * float(least), length.sum() / 8), length.sum()
     three = np.concatenate([along - whole, along, along + whole])
     turned = np.concatenate([bend.cumsum() + k * bend.sum() for k in (-1, 0, 1)])
-    ends = [np.interp(along + length / 2 + d * width / 2, three, turned) for d in (-1, 1)]
-    density = 1 / EDGES + (ends[1] - ends[0]) / width * length / bend.sum()
+    behind = np.asarray(np.interp(along + length / 2 - width / 2, three, turned), np.float64)
+    ahead = np.asarray(np.interp(along + length / 2 + width / 2, three, turned), np.float64)
+    density = 1 / EDGES + (ahead - behind) / width * length / bend.sum()
     # Mirrored in both axes, so that mirrored outlines have mirrored rows.
     density = density + density[::-1]
     density = density + np.roll(density, EDGES // 2)
@@ -253,11 +255,11 @@ def _neighbours(place: Float, count: int) -> tuple[Any, Any, Float]:
 
 def _between(values: Float, row: Float, column: Float) -> Float:
     """Values (...) at rows and columns (...), linear in both."""
-    row, following, part = _neighbours(row, len(values))
+    before, following, part = _neighbours(row, len(values))
     first = np.minimum(column.astype(np.int32), COLUMNS - 2)
     beside = column - first
     near, far = (
-        (1 - part) * values[row, at] + part * values[following, at] for at in (first, first + 1)
+        (1 - part) * values[before, at] + part * values[following, at] for at in (first, first + 1)
     )
     return (1 - beside) * near + beside * far
 

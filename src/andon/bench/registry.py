@@ -91,4 +91,5 @@ def rows() -> tuple[BenchRow, ...]:
 
     light = relight.ROWS + areas.ROWS + glow.ROWS
     rest = glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS
-    return light + rest + glare.ROWS + glare_needles.ROWS + glare_quads.ROWS
+    veils = glare.ROWS + glare_frame.ROWS + glare_needles.ROWS + glare_quads.ROWS
+    return light + rest + veils

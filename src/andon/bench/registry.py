@@ -79,6 +79,7 @@ def rows() -> tuple[BenchRow, ...]:
     from andon.bench import (
         areas,
         glare,
+        glare_frame,
         glare_needles,
         glare_quads,
         glass,

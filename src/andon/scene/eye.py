@@ -10,6 +10,9 @@ from andon.scene.base import Count, Fraction, NonNegative, Positive, Reference, 
 
 __all__ = ["Atmosphere", "Display", "Gaze", "Glare", "Observer"]
 
+# A veil begins near its source: light that is scattered fades out from 90° on.
+MinimumAngle = Annotated[float, Field(gt=0, le=10)]
+
 
 class Observer(Table):
     """Whose eyes."""
@@ -187,9 +190,9 @@ class Glare(Table):
     )
     adaptation: Literal["auto", "photopic", "mesopic", "scotopic"] = Field(
         default="auto",
-        description="Weights of the model spencer.",
+        description="Of the eye: weighs spencer's terms and the ring; auto: by the ambient light.",
     )
-    minimum_angle_degrees: Positive = Field(
+    minimum_angle_degrees: MinimumAngle = Field(
         default=0.1,
         description="Light scattered by less than this stays where it is, degrees.",
     )

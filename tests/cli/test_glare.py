@@ -110,6 +110,16 @@ def test_a_night_stays_dark(capfd, folder):
     assert shown[1] < 0.6 * shown[0]
 
 
+def test_bright_walls_are_not_all_white(capfd, folder):
+    """A third of a dark room is a lit wall, two decades up: the log mean alone would lose it."""
+    light = np.full((30, 30, 3), 0.05, np.float32)
+    light[20:] = 5.0
+    write_exr(folder / "room.exr", light, unit="cd/m2")
+    outcome = glared(capfd, "room.exr", "--hfov-degrees", "40", out="o.png")
+    shown = float(outcome.err.partition("exposure ")[2].split()[0])
+    assert shown == pytest.approx(1 / 5, rel=1e-3)
+
+
 def test_the_first_command_is_shown(capfd):
     for words in ([], ["--help"]):
         outcome = run_andon(capfd, "glare", *words)
@@ -130,6 +140,16 @@ def test_glare_alone(capfd, folder):
     glared(capfd, "night.exr", "--glare-only", out="veil.png")
     picture = read_picture(folder / "veil.png").values
     assert picture[0, 0].max() < picture[18, 31].min()
+
+
+def test_a_picture_without_sources_is_told(capfd, folder):
+    write_exr(folder / "even.exr", np.full((8, 12, 3), 0.5, np.float32), unit="relative")
+    words = ["even.exr", "--renderer", "per-source"]
+    assert "nothing is scattered" in glared(capfd, *words).err
+    assert (read_picture(folder / "out.exr").values == 0.5).all()
+    whole = glared(capfd, "even.exr").err
+    assert "nothing is scattered" not in whole
+    assert "the eye is mesopic, its pupil 5 mm" in whole
 
 
 def test_veil_maps(capfd, folder):

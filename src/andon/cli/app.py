@@ -288,7 +288,7 @@ def verify(
 ) -> None:
     """Measure the accuracy of this installation against closed forms and other programs.
 
-    Examples: `andon verify`, `andon verify relight.point --json rows.json`
+    Examples: `andon verify`, `andon verify glare`, `andon verify relight.point --json rows.json`
     """
     from andon.verify.run import run
 

@@ -33,6 +33,8 @@ Rgb = NDArray[np.uint8]
 MIDDLE_GREY = 0.18
 # Darker than this share of the mean is as good as black, and would pull the logarithm down.
 BLACK = 1e-4
+# So much of a picture may be white.
+MOST_WHITE = 0.2
 # Sheets are not wider than this.
 SHEET_PX = 3200
 
@@ -43,7 +45,7 @@ def auto_exposure(seen: Calibrated) -> float:
     Below where most of a picture is dark beside its lights, so that a night stays one: the key is
     then 0.18·4^f, f the place of the log mean between the 1st (−1) and the 99th percentile (+1)
     (Reinhard 2002, "Parameter estimation for photographic tone reproduction"). A high key is left
-    out: it would take the sky of a day to white.
+    out: it would take the sky of a day to white; and so is what makes a fifth of a picture white.
     """
     if seen.clipped is not None:
         return 1 / seen.cd_m2_per_unit
@@ -60,7 +62,8 @@ def auto_exposure(seen: Calibrated) -> float:
     mean = float(np.average(logs, weights=weights[lit]))
     low, high = np.quantile(logs, (0.01, 0.99))
     place = (2 * mean - low - high) / max(high - low, 1e-9)
-    return MIDDLE_GREY * 4.0 ** min(float(place), 0.0) / float(np.exp(mean))
+    scale = MIDDLE_GREY * 4.0 ** min(float(place), 0.0) / float(np.exp(mean))
+    return min(scale, 1 / float(np.exp(np.quantile(logs, 1 - MOST_WHITE))))
 
 
 def exposed(light: Float, units_per_cd_m2: float, tone: Tone = "hue") -> Rgb:

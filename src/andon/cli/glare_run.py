@@ -33,7 +33,12 @@ def run(options: GlareOptions) -> None:
         note(warning)
     if seen.photometry == "relative":
         eye = results[0].eye
-        note(f"so the eye is taken to be {eye.adaptation}, its pupil as {eye.pupil_mm:g} mm")
+        note(f"without cd/m² the eye is {eye.adaptation}, its pupil {eye.pupil_mm:g} mm")
+    if options.renderer == "per-source" and not results[0].found.sources:
+        note(
+            "no source is 40 times brighter than the picture, so that nothing is scattered; "
+            "--renderer whole-picture scatters all light"
+        )
     _write(options, seen, results, check)
     for line in _told(results[-1]):
         note(line)

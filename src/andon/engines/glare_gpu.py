@@ -102,7 +102,9 @@ class GlareView:
 
     def update(self, lamps: Sequence[Lamp]) -> None:
         """Finds the sources, once what was recorded has run."""
-        found, unpictured = self._unpictured.split(lamps, self._find.read(), self.view)
+        found, unpictured = self._unpictured.split(
+            lamps, self._find.read(), self.view, blooms=self._veil is None
+        )
         self.found = found
         self._lamps.update(unpictured, self.glare.kernel)
         seen = self.glare.around(found, self.view)
@@ -115,7 +117,7 @@ class GlareView:
             weights=seen.halo_weights.tolist(),
             settings=PerSource(bloom_drawn=self._veil is None),
         )
-        share = taken_share(found, seen) + self.glare.bloom_share
+        share = taken_share(found, seen, self.glare.bloom_share)
         self._taken.update(found, share, self.glare.contrast)
 
     def encode(self, encoder: Any) -> None:

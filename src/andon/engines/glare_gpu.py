@@ -19,7 +19,7 @@ from andon.glare.whole_picture.stage import WholePictureStage
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.layout import HostStruct
-from andon.gpu.passes import FullscreenPass, color_attachment
+from andon.gpu.passes import PLUS, FullscreenPass, color_attachment
 from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
 from andon.lamps import Lamp
 from andon.quantities import CameraFrame, Geometry
@@ -30,10 +30,6 @@ __all__ = ["GlareView"]
 SHARP = "andon/glare/sharp.wgsl"
 TAKEN_SHARE = HostStruct("TakenShare", (("taken", "vec3f"), ("least", "f32")))
 HALF_MOST = float(np.finfo(np.float16).max)
-PLUS = {
-    part: {"operation": "add", "src_factor": "one", "dst_factor": "one"}
-    for part in ("color", "alpha")
-}
 
 
 class GlareView:

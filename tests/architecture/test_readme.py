@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from andon.cli import _run
-from andon.files.pictures import read_picture, write_picture
+from andon.files.pictures import read_picture, write_exr, write_picture
 
 from .tree import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = re.findall(r"`andon (relight [^`]*)`", README)
 PROBE_COMMANDS = re.findall(r"`andon (probes [^`]*)`", README)
+GLARE_COMMANDS = re.findall(r"`andon (glare [^`]*)`", README)
 PYTHON = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
 FILES = dict(re.findall(r"```toml\n# ([\w.]+)[^\n]*\n(.*?)```", README, re.DOTALL))
 
@@ -33,8 +34,9 @@ def folder(tmp_path, monkeypatch):
 def test_it_shows_something():
     assert len(COMMANDS) >= 4
     assert [command.split()[1] for command in PROBE_COMMANDS] == ["place", "bake", "show", "export"]
-    assert set(FILES) == {"camera.toml", "night.toml", "probes.toml", "ball.toml"}
-    assert len(PYTHON) == 3
+    assert set(FILES) == {"camera.toml", "night.toml", "probes.toml", "ball.toml", "eye.toml"}
+    assert len(GLARE_COMMANDS) == 5
+    assert len(PYTHON) == 4
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -80,10 +82,47 @@ def test_glass(folder, capsys):
     assert seen == pytest.approx(told, abs=0.005)
 
 
-def test_glare(folder, capsys):
-    command = re.search(r"`andon (glare psf [^`]*)`", README)[1]
-    assert _run(shlex.split(command), debug=True) == 0
-    assert read_picture(folder / "psf.png").values.shape[1] == 1200
+@pytest.fixture
+def lights(folder):
+    """A picture of lights, and leaves, small ones."""
+    light = np.full((48, 96, 3), 0.5, np.float32)
+    light[20:22, 40:42] = 50_000
+    write_exr(folder / "night.exr", light, unit="cd/m2", photometry="absolute")
+    leaves = np.zeros((40, 60, 3), np.uint8)
+    leaves[10:13, 20:23] = leaves[25:27, 40:42] = 255
+    write_picture(folder / "leaves.png", leaves)
+    return folder
+
+
+# What makes a command quick here: its words are as in the README otherwise.
+SHORTER = {
+    "komorebi": ("--seconds", "0.1"),
+    "figures": ("--figures", "4,6", "--width", "64", "--engine", "reference"),
+}
+
+
+@pytest.mark.parametrize("command", GLARE_COMMANDS)
+def test_glare(command, lights, capsys):
+    words = shlex.split(command)
+    assert _run([*words, *SHORTER.get(words[1], ())], debug=True) == 0
+    out = lights / words[words.index("-o") + 1]
+    assert out.is_dir() or out.stat().st_size > 1000
+    if "--report" in words:
+        assert (lights / words[words.index("--report") + 1]).is_file()
+
+
+def test_glare_in_python_and_in_a_scene(folder, capsys):
+    names = {}
+    exec(compile(PYTHON[3], "README.md", "exec"), names)
+    told = float(re.search(r"veil_cd_m2  # ([\d.]+) cd", README)[1])
+    assert names["seen"].numbers.veil_cd_m2 == pytest.approx(told, abs=0.02)
+    without = FILES["eye.toml"].partition("[glare]")[0]
+    (folder / "sharp.toml").write_text(without, encoding="utf-8")
+    for name in ("eye", "sharp"):
+        words = ["relight", "--scene", f"{name}.toml", "-o", f"{name}.png"]
+        assert _run([*words, "--engine", "reference"], debug=True) == 0
+    seen, sharp = (read_picture(folder / f"{name}.png").values for name in ("eye", "sharp"))
+    assert (seen.astype(int) - sharp).max() > 30
 
 
 def test_links():

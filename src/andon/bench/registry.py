@@ -79,6 +79,7 @@ def rows() -> tuple[BenchRow, ...]:
     from andon.bench import (
         areas,
         glare,
+        glare_frame,
         glare_needles,
         glare_quads,
         glass,
@@ -91,4 +92,5 @@ def rows() -> tuple[BenchRow, ...]:
 
     light = relight.ROWS + areas.ROWS + glow.ROWS
     rest = glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS
-    return light + rest + glare.ROWS + glare_needles.ROWS + glare_quads.ROWS
+    veils = glare.ROWS + glare_frame.ROWS + glare_needles.ROWS + glare_quads.ROWS
+    return light + rest + veils

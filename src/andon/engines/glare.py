@@ -13,6 +13,7 @@ from andon.errors import InputError
 from andon.glare.around import Around, around
 from andon.glare.kernel import Kernel
 from andon.glare.needles.model import NeedleModel, Which
+from andon.glare.per_source.reference import veil_share
 from andon.glare.sources.live import LiveSources, SourceFinder
 from andon.glare.whole_picture.plan import WholePlan, plan_whole
 from andon.observer.presets import eye_of
@@ -54,10 +55,9 @@ class SceneGlare:
     seed: int
     plans: Mapping[str, WholePlan]
 
-    @property
-    def bloom_share(self) -> float:
+    def bloom_share(self, view: View) -> float:
         """Share of a source's light that becomes bloom where only sources are scattered."""
-        return 0.0 if self.plans else self.kernel.share
+        return 0.0 if self.plans else veil_share(view, self.kernel)
 
     @property
     def ring(self) -> SpreadFunction | None:

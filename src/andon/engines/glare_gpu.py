@@ -113,7 +113,7 @@ class GlareView:
             weights=seen.halo_weights.tolist(),
             settings=PerSource(bloom_drawn=self._veil is None),
         )
-        share = taken_share(found, seen, self.glare.bloom_share)
+        share = taken_share(found, seen, self.glare.bloom_share(self.view))
         self._taken.update(found, share, self.glare.contrast)
 
     def encode(self, encoder: Any) -> None:

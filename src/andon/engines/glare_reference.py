@@ -46,7 +46,7 @@ def glare_seen(
     if own.ring is not None:
         weights = seen.halo_weights.tolist()
         added += halos_of_sources(sources, view, own.kernel, own.ring, weights=weights)
-    share = taken_share(found, seen, own.bloom_share)
+    share = taken_share(found, seen, own.bloom_share(view))
     least = gate(photometric(shining), found.ambient_cd_m2, contrast=own.contrast)
     taken = shining * share * least[..., None]
     if not own.plans:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from andon.glare.kernel import Kernel
 from andon.glare.model import Source
 from andon.glare.per_source.model import PerSource
-from andon.glare.per_source.reference import veil_of_sources
+from andon.glare.per_source.reference import veil_of_sources, veil_share
 from andon.glare.sources.find import SHAPED, FoundSources
 from andon.glare.whole_picture.plan import WholePlan, plan_whole
 from andon.glare.whole_picture.reference import resolved, veil
@@ -75,7 +75,7 @@ def scatter_sources(
     """Scatters the light of the sources `found` in (H, W, 3); all other light stays."""
     settings = PerSource(least_cd_m2=UNSEEN * found.ambient_cd_m2)
     sources = found.simplified()
-    share = np.where(found.labels > 0, kernel.share, 0.0)
+    share = np.where(found.labels > 0, veil_share(view, kernel), 0.0)
     if engine == "gpu" or (engine == "auto" and _has_gpu()):
         drawn = _sources_on_gpu(sources, view, kernel, settings)
         return _summed(light, drawn, share, view, kernel, "gpu")

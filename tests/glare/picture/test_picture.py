@@ -194,3 +194,22 @@ def test_clipped_sources_are_reported():
 
 def test_it_is_public():
     assert andon.glare_of_picture is glare_of_picture
+
+
+@pytest.mark.parametrize("hfov_degrees", [20.0, 60.0])
+def test_both_renderers_keep_as_much_light(hfov_degrees):
+    """With pixels finer than 0.1°, whose core is veil, and with coarser ones."""
+    focal = 160 / np.tan(np.radians(hfov_degrees / 2))
+    view = pinhole_view(320, 240, float(focal))
+    theta = np.degrees(np.arccos(np.clip(view.directions()[..., 2], -1, 1)))
+    light = np.where(theta < 0.5, 1e4, 0.0)[..., None] * np.ones(3)
+    solid = view.solid_angles()[..., None]
+    kept = [
+        float((seen.picture * solid).sum() / (light * solid).sum())
+        for seen in (
+            glare_of_picture(light, view, with_stars=False, engine="reference", renderer=renderer)
+            for renderer in ("whole-picture", "per-source")
+        )
+    ]
+    assert kept[0] < 1
+    assert kept[1] == pytest.approx(kept[0], abs=0.005)

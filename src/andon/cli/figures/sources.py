@@ -13,7 +13,7 @@ from andon.glare.kernel import Kernel
 from andon.glare.model import Outline, Source
 from andon.glare.needles import needles_of
 from andon.glare.needles.reference import draw
-from andon.glare.per_source.reference import has_core, veil_of_sources
+from andon.glare.per_source.reference import veil_of_sources, veil_share
 from andon.glare.shapes import circle, cylinder, ellipse
 from andon.lamps.colour import rgb_factors
 from andon.observer.spread.family import spread_function
@@ -117,9 +117,8 @@ def _source(outline: Outline, turn_degrees: float = 0.0) -> Source:
 def _bloomed(source: Source, view: View, eye: Eye, model: str, kept: float = 1.0) -> Float:
     """(H, W, 3) cd/m² of a source and its bloom; `kept` of its light is not made something else."""
     kernel = Kernel(spread_function(model, eye))
-    taken = kernel.share + (kernel.core_share if has_core(view, kernel) else 0.0)
     body = _cover(source, view)[..., None] * source.luminance_cd_m2
-    return (1 - taken) * kept * body + veil_of_sources([source], view, kernel)
+    return (1 - veil_share(view, kernel)) * kept * body + veil_of_sources([source], view, kernel)
 
 
 def _cover(source: Source, view: View) -> Float:

@@ -19,7 +19,7 @@ from andon.glare.pixels import pixel_radians
 from andon.observer.spread.model import SpreadFunction
 from andon.spaces import View
 
-__all__ = ["halos_of_sources", "has_core", "veil_of_sources"]
+__all__ = ["halos_of_sources", "has_core", "veil_of_sources", "veil_share"]
 
 Float = NDArray[np.float64]
 
@@ -27,6 +27,11 @@ Float = NDArray[np.float64]
 def has_core(view: View, kernel: Kernel, /) -> bool:
     """Whether pixels of `view` are finer than θ_min, so that the core is seen apart."""
     return pixel_radians(view) < np.radians(kernel.minimum_degrees)
+
+
+def veil_share(view: View, kernel: Kernel, /) -> float:
+    """Share of a source's light that `veil_of_sources` scatters: k, and the core where it is."""
+    return kernel.share + (kernel.core_share if has_core(view, kernel) else 0.0)
 
 
 def veil_of_sources(

@@ -20,6 +20,7 @@ the paper for the paper.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,6 +35,14 @@ __all__ = ["NAMES", "lenticular_halo", "scattered_share", "spread_function"]
 
 Float = NDArray[np.float64]
 PerSr = Callable[[ArrayLike], Float]
+
+
+class Ring(Protocol):
+    """Rings of red, green and blue in bands: θ in degrees (...) → sr⁻¹ (..., 3)."""
+
+    def __call__(self, theta_degrees: ArrayLike, /, *, band_nm: float) -> Float: ...
+
+
 Range = tuple[float, float]
 
 # Names that people type for the equations of the CIE.
@@ -69,14 +78,16 @@ def spread_function(name: str, eye: Eye | None = None, /, *, halo: bool = True) 
     return spread
 
 
-def lenticular_halo(eye: Eye, /, ring: PerSr = spencer.halo) -> PerSr | None:
+def lenticular_halo(eye: Eye, /, ring: Ring = spencer.halo) -> PerSr | None:
     """θ in degrees (...) → sr⁻¹ (..., 3): the ring that `eye` sees around a point.
 
-    A `ring` of unit integral times the share of its light, of Spencer et al. 1995: 0.016 in
-    mesopic, 0.033 in scotopic light; None in photopic light.
+    A `ring` of unit integral in the bands of the channels, times the share of its light, of
+    Spencer et al. 1995: 0.016 in mesopic, 0.033 in scotopic light; None in photopic light.
     """
     share = spencer.WEIGHTS[eye.adaptation][3]
-    return (lambda theta: share * ring(theta)) if share else None
+    if share == 0:
+        return None
+    return lambda theta: share * ring(theta, band_nm=spencer.BAND_NM)
 
 
 def scattered_share(

@@ -49,14 +49,20 @@ def point_bloom(theta_degrees: ArrayLike, age: float = 25.0, wide: float = 1.0) 
     return amplitude / (angles(theta_degrees) + CORE_DEGREES) ** EXPONENT
 
 
-def halo(theta_degrees: ArrayLike, /, wavelength_nm: tuple[float, ...] = HALO_NM) -> Float:
-    """(..., n) equation 2 in sr⁻¹ of n wavelengths, each of unit integral (on the plane)."""
+def halo(
+    theta_degrees: ArrayLike, /, wavelength_nm: tuple[float, ...] = HALO_NM, band_nm: float = 0.0
+) -> Float:
+    """(..., n) equation 2 in sr⁻¹ of n wavelengths, each of unit integral (on the plane).
+
+    With `band_nm` it is the mean over a Gaussian band of that standard deviation around each.
+    """
     theta = angles(theta_degrees)[..., None]
     radius = RING_DEGREES * np.asarray(wavelength_nm, np.float64) / 568
-    # ∫ 2πθ·exp(−(θ − radius)²/α²) dθ in square degrees; what lies behind θ = 0 is e⁻¹¹⁰.
-    area = 2 * np.pi * radius * np.sqrt(np.pi) * RING_WIDTH_DEGREES
-    ring = np.exp(-(((theta - radius) / RING_WIDTH_DEGREES) ** 2))
-    return ring / (area * np.radians(1) ** 2)
+    # A Gaussian of radii over a Gaussian ring of variance α²/2.
+    width = np.hypot(RING_WIDTH_DEGREES, np.sqrt(2) * RING_DEGREES * band_nm / 568)
+    # ∫ 2πθ·exp(−(θ − radius)²/α²) dθ in square degrees; what lies behind θ = 0 is below e⁻⁴⁰.
+    area = 2 * np.pi * radius * np.sqrt(np.pi) * width
+    return np.exp(-(((theta - radius) / width) ** 2)) / (area * np.radians(1) ** 2)
 
 
 def outline_bloom(beyond_degrees: ArrayLike, age: float = 25.0, wide: float = 1.0) -> Float:

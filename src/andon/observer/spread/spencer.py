@@ -25,6 +25,7 @@ from andon.observer.spread.angles import angles
 from andon.observer.spread.model import Adaptation
 
 __all__ = [
+    "BAND_NM",
     "HALO_NM",
     "VALID_DEGREES",
     "WEIGHTS",
@@ -45,6 +46,9 @@ WEIGHTS: dict[Adaptation, tuple[float, float, float, float]] = {
 }
 # What the ring is drawn for in red, green and blue.
 HALO_NM = (611.0, 549.0, 467.0)
+# Standard deviation of a channel's band. Lamps and skies have light of all wavelengths, of which a
+# channel takes some 80 nm (full width at half maximum); a line each would be three hoops.
+BAND_NM = 35.0
 
 
 def core(theta_degrees: ArrayLike, /) -> Float:
@@ -62,11 +66,18 @@ def wide_skirt(theta_degrees: ArrayLike, /) -> Float:
     return 72.37 / (angles(theta_degrees) + 0.02) ** 2
 
 
-def halo(theta_degrees: ArrayLike, /, wavelength_nm: tuple[float, ...] = HALO_NM) -> Float:
-    """(..., n) f3 in sr⁻¹ of n wavelengths; each has a ring of its own radius, of one width."""
+def halo(
+    theta_degrees: ArrayLike, /, wavelength_nm: tuple[float, ...] = HALO_NM, band_nm: float = 0.0
+) -> Float:
+    """(..., n) f3 in sr⁻¹ of n wavelengths; each has a ring of its own radius, of one width.
+
+    With `band_nm` it is the mean over a Gaussian band of that standard deviation around each.
+    """
     theta = angles(theta_degrees)[..., None]
     ratio = np.asarray(wavelength_nm, np.float64) / 568
-    return 436.9 / ratio * np.exp(-19.75 * (theta - 3 * ratio) ** 2)
+    # A Gaussian of radii over a Gaussian ring: variances add, and the integral stays.
+    narrow = 1 / np.sqrt(1 + 2 * 19.75 * (3 * band_nm / 568) ** 2)
+    return 436.9 * narrow / ratio * np.exp(-19.75 * (narrow * (theta - 3 * ratio)) ** 2)
 
 
 def spencer(

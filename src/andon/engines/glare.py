@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from andon.engines.adaptation import adaptation_cd_m2
 from andon.errors import InputError
-from andon.glare.around import Around, around
+from andon.glare.around import Around, around, needles_within
 from andon.glare.kernel import Kernel
 from andon.glare.needles.model import NeedleModel, Which
 from andon.glare.per_source.reference import veil_share
@@ -126,7 +126,9 @@ def glare_of(
         kernel,
         table.highlight_contrast,
         table.highlights,
-        _needle_model(scene, table.highlight_contrast, mean) if table.needles else None,
+        needles_within(kernel, _needle_model(scene, table.highlight_contrast, mean))
+        if table.needles
+        else None,
         scene.scene.seed if table.seed is None else table.seed,
         {name: plan_whole(frame.view, kernel) for name, frame in frames.items()} if whole else {},
     )

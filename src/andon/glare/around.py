@@ -26,7 +26,7 @@ Float = NDArray[np.float64]
 RING_SEEN_DEGREES, RING_LOST_DEGREES = 0.75, 1.5
 
 
-# Share of its light that a source keeps: sums of Gaussians for the veil take up to so much too much.
+# Share of its light that a source keeps: the veil's sums of Gaussians may take so much more.
 LEAST_LEFT = 0.01
 
 

@@ -20,7 +20,7 @@ from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.layout import HostStruct
 from andon.gpu.passes import PLUS, FullscreenPass, color_attachment
-from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
+from andon.gpu.textures import HALF_MOST, Texture, make_texture, uniform_buffer, write_buffer
 from andon.lamps import Lamp
 from andon.quantities import CameraFrame, Geometry
 from andon.transport.direct.records import MAX_LAMPS
@@ -29,7 +29,6 @@ __all__ = ["GlareView"]
 
 SHARP = "andon/glare/sharp.wgsl"
 TAKEN_SHARE = HostStruct("TakenShare", (("taken", "vec3f"), ("least", "f32")))
-HALF_MOST = float(np.finfo(np.float16).max)
 
 
 class GlareView:

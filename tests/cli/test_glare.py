@@ -77,8 +77,12 @@ def test_ages_side_by_side(capfd, folder):
     assert "60°" in outcome.err
     assert "relative" in outcome.err
     sheet = read_picture(folder / "ages.png").values
-    assert sheet.shape[1] == 4 * WIDTH
-    tiles = np.split(sheet[-HEIGHT:], 4, axis=1)
+    gap = 6
+    assert sheet.shape[1] == 4 * WIDTH + 3 * gap
+    tiles = [sheet[-HEIGHT:, at : at + WIDTH] for at in np.arange(4) * (WIDTH + gap)]
+    # Paper between them, and captions of several lines over pictures as narrow as these.
+    assert (sheet[:, WIDTH : WIDTH + gap] > 230).all()
+    assert sheet.shape[0] > HEIGHT + 3 * 22
     # The wall beside the lamp, at one exposure for all: darker before than after, and so with age.
     beside = [tile[24:27, 34:37].mean() for tile in tiles]
     assert beside == sorted(beside)
@@ -87,6 +91,30 @@ def test_ages_side_by_side(capfd, folder):
     assert [told["observer"]["age_years"] for told in reports] == [20, 45, 70]
     veils = [told["veil_cd_m2"]["gaze"] for told in reports]
     assert veils == sorted(veils)
+
+
+def test_a_night_stays_dark(capfd, folder):
+    """A wall with bright windows in it is exposed lower than the wall alone."""
+    rng = np.random.default_rng(5)
+    wall = np.exp(rng.normal(0, 0.3, (HEIGHT, WIDTH, 1))) * np.ones(3)
+    lights = wall.copy()
+    lights[rng.random((HEIGHT, WIDTH)) < 0.03] *= 300
+    shown: list[float] = []
+    for name, light in (("even", wall), ("lights", lights)):
+        write_exr(folder / f"{name}.exr", light.astype(np.float32), unit="cd/m2")
+        outcome = glared(capfd, f"{name}.exr", "--hfov-degrees", "40", out="o.png")
+        shown.append(float(outcome.err.partition("exposure ")[2].split()[0]))
+    # Middle grey of the log mean, which is 1; lights are in 3 % of the pixels.
+    assert shown[0] == pytest.approx(0.18, rel=0.1)
+    assert shown[1] < 0.6 * shown[0]
+
+
+def test_the_first_command_is_shown(capfd):
+    for words in ([], ["--help"]):
+        outcome = run_andon(capfd, "glare", *words)
+        assert outcome.code == 0
+        assert "night.hdr" in outcome.out
+        assert outcome.err == ""
 
 
 def test_glare_alone(capfd, folder):
@@ -199,6 +227,10 @@ def test_what_is_no_light_is_counted(capfd, folder):
             "fish-eye",
         ),
         (["missing.exr", "-o", "o.png"], "must exist"),
+        (["nothing.exr", "-o", "o.png"], "no pixel that is a number"),
+        (["psff", "-o", "o.png"], "perhaps andon glare psf"),
+        (["night.exr"], "see andon glare picture --help"),
+        (["night.exr", "-o", "o.png", "--exposure", "0"], "number > 0"),
         (["night.exr", "-o", "o.png", "--camera", "none.toml"], "must exist"),
         (["night.exr", "-o", "o.png", "--camera", "c.toml", "--projection", "pinhole"], "--camera"),
         (["huge.hdr", "-o", "o.png"], "at most"),
@@ -212,6 +244,7 @@ def test_refusals(capfd, folder, words, said):
     (folder / "empty.hdr").write_text(head.format("", 0, 10))
     pixels = (folder / "night.hdr").read_bytes().replace(b"-vtv", b"-vtl")
     (folder / "axial.hdr").write_bytes(pixels)
+    write_exr(folder / "nothing.exr", np.full((4, 8, 3), np.nan, np.float32), unit="cd/m2")
     outcome = run_refused(capfd, folder, "glare", *words)
     assert said in outcome
 

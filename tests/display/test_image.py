@@ -66,6 +66,18 @@ def test_a_sheet():
     assert sheet[:CAPTION_PX, :width].min() < 60
 
 
+def test_a_sheet_has_gaps_and_long_captions():
+    tile = np.full((20, 100, 3), 90, np.uint8)
+    sheet = contact_sheet([("short", tile), ("of very many words", tile)], columns=2, gap_px=4)
+    lines = (sheet.shape[0] - 20) // CAPTION_PX
+    assert sheet.shape == (20 + lines * CAPTION_PX, 204, 3)
+    assert lines == 2
+    assert (sheet[:, 100:104] == PAPER).all()
+    assert (sheet[CAPTION_PX : 2 * CAPTION_PX, :100] == PAPER).all()
+    assert sheet[CAPTION_PX : 2 * CAPTION_PX, 104:].min() < 60
+    assert (sheet[-20:, 104:] == 90).all()
+
+
 def test_holes_have_a_colour_of_their_own_and_the_bar_is_beside():
     valid = RAMP < 100
     picture = false_colour(RAMP, "lx", valid=valid)

@@ -40,11 +40,16 @@ def _run(words: list[str], debug: bool) -> int:
         # Usage errors are Click's or, in newer versions, Typer's own: no common base, one method.
         usage = getattr(error, "format_message", None)
         if usage is not None:
-            return _say(f"{usage()}; see andon --help", 2)
+            return _say(f"{usage().rstrip('.')}; see {_command(error)} --help", 2)
         if debug:
             raise
         what = f"{type(error).__name__}: {error}".replace("\n", " ")
         return _say(f"internal error, please report it with the output of --debug: {what}", 1)
+
+
+def _command(error: Exception) -> str:
+    """The command that a usage error is of: that of its context, if it has one."""
+    return getattr(getattr(error, "ctx", None), "command_path", None) or "andon"
 
 
 def _say(message: str, code: int) -> int:

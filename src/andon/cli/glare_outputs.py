@@ -35,10 +35,18 @@ MIDDLE_GREY = 0.18
 BLACK = 1e-4
 # Sheets are not wider than this.
 SHEET_PX = 3200
+# Between the pictures of a sheet.
+GAP_PX = 6
 
 
 def auto_exposure(seen: Calibrated) -> float:
-    """Screen value per cd/m²: as photographed, or the log mean of HDR at middle grey."""
+    """Screen value per cd/m²: as photographed, or the log mean of HDR at middle grey and below.
+
+    Below where most of a picture is dark beside its lights, so that a night stays one: the key is
+    then 0.18·4^f, f the place of the log mean between the 1st (−1) and the 99th percentile (+1)
+    (Reinhard 2002, "Parameter estimation for photographic tone reproduction"). A high key is left
+    out: it would take the sky of a day to white.
+    """
     if seen.clipped is not None:
         return 1 / seen.cd_m2_per_unit
     from andon.quantities import photometric
@@ -50,7 +58,11 @@ def auto_exposure(seen: Calibrated) -> float:
     lit = light > BLACK * max(float(np.average(light.clip(0), weights=weights)), 1e-30)
     if not (lit & (weights > 0)).any():
         return 1.0
-    return MIDDLE_GREY / float(np.exp(np.average(np.log(light[lit]), weights=weights[lit])))
+    logs = np.log(light[lit])
+    mean = float(np.average(logs, weights=weights[lit]))
+    low, high = np.quantile(logs, (0.01, 0.99))
+    place = (2 * mean - low - high) / max(high - low, 1e-9)
+    return MIDDLE_GREY * 4.0 ** min(float(place), 0.0) / float(np.exp(mean))
 
 
 def exposed(light: Float, units_per_cd_m2: float, tone: Tone = "hue") -> Rgb:
@@ -80,7 +92,7 @@ def sheet(tiles: Sequence[tuple[str, Rgb]]) -> Rgb:
     most = max(1, SHEET_PX // tiles[0][1].shape[1])
     # As many rows as that takes, evenly filled.
     rows = -(-len(tiles) // most)
-    return contact_sheet(list(tiles), columns=-(-len(tiles) // rows))
+    return contact_sheet(list(tiles), columns=-(-len(tiles) // rows), gap_px=GAP_PX)
 
 
 def write_light(

@@ -31,6 +31,9 @@ def run(options: GlareOptions) -> None:
     check = _checked(results[0]) if options.evalglare else None
     for warning in (*seen.warnings, *results[0].warnings):
         note(warning)
+    if seen.photometry == "relative":
+        eye = results[0].eye
+        note(f"so the eye is taken to be {eye.adaptation}, its pupil as {eye.pupil_mm:g} mm")
     _write(options, seen, results, check)
     for line in _told(results[-1]):
         note(line)
@@ -78,6 +81,8 @@ def _read(options: GlareOptions) -> Calibrated:
 
     limits = replace(DEFAULT_LIMITS, max_pixels=MAX_PIXELS)
     picture = read_picture(options.picture, limits=limits)
+    if not np.isfinite(picture.values).any():
+        raise InputError("has no pixel that is a number", file=options.picture)
     return calibrated(
         picture,
         view=view_of(options, picture),
@@ -191,14 +196,20 @@ def _report(result: GlareResult, seen: Calibrated, map_file: str | None) -> Any:
     return told
 
 
+def _short(value: float) -> str:
+    """Three digits, without an exponent where a person would write none."""
+    return f"{float(f'{value:.3g}'):g}"
+
+
 def _told(result: GlareResult) -> list[str]:
     """The main numbers of the last eye, as lines."""
     numbers = result.numbers
     word = result.photometry
     unit = "cd/m²" if word == "absolute" else "(relative)"
     lines = [
-        f"veil where the eye looks {numbers.veil_cd_m2:.3g} {unit}, of a mean of "
-        f"{numbers.adaptation_cd_m2:.3g}; {len(result.found.sources)} sources"
+        f"{result.eye.age_years:g} years: a veil of {_short(numbers.veil_cd_m2)} {unit} where the "
+        f"eye looks; the picture's mean without sources is {_short(numbers.adaptation_cd_m2)}; "
+        f"sources: {len(result.found.sources)}"
     ]
     for name, value in (("TI", numbers.ti_percent), ("UGR", numbers.ugr), ("DGP", numbers.dgp)):
         valid = numbers.validity[{"TI": "ti_percent"}.get(name, name.lower())]

@@ -108,7 +108,17 @@ def gaze_of(typed: str | None, view: View) -> Any:
 
 def exposure_of(typed: str) -> float | None:
     """Screen value per cd/m²; None: auto."""
-    return None if typed == "auto" else _number(typed, "--exposure", 0, math.inf, "auto or ")
+    if typed == "auto":
+        return None
+    try:
+        value = float(typed)
+    except ValueError:
+        value = math.nan
+    if not 0 < value < math.inf:
+        raise InputError(
+            f"must be auto or a number > 0, got {typed.strip()[:40]!r}", field="--exposure"
+        )
+    return value
 
 
 def _number(text: str, field: str, least: float, most: float, words: str = "") -> float:

@@ -13,7 +13,8 @@ __all__ = ["contact_sheet", "depth_picture", "false_colour", "normal_picture"]
 Rgb = NDArray[np.uint8]
 
 BAR_WIDTH_PX = 74
-CAPTION_PX = 22
+# Height of a line of a caption, of its letters, and its distance from the border.
+CAPTION_PX, CAPTION_FONT_PX, CAPTION_MARGIN_PX = 22, 14, 6
 # Above the scale there is room for a line with the unit, below for half of the last label.
 ABOVE_PX, BELOW_PX = 28, 10
 # Height of a label of 12 px, with the air that keeps it apart from the next.
@@ -98,13 +99,26 @@ def normal_picture(normal: NDArray[Any], valid: NDArray[np.bool_], /) -> Rgb:
     return picture
 
 
-def contact_sheet(tiles: Sequence[tuple[str, Rgb]], /, *, columns: int = 3) -> Rgb:
-    """Captioned pictures in rows, all brought to the width of the first."""
+def contact_sheet(tiles: Sequence[tuple[str, Rgb]], /, *, columns: int = 3, gap_px: int = 0) -> Rgb:
+    """Captioned pictures in rows, all brought to the width of the first.
+
+    A caption that is wider than its picture goes on below, and then all have as many lines.
+    Between pictures side by side there are `gap_px` pixels.
+    """
     height, width = tiles[0][1].shape[:2]
-    cells = [_captioned(caption, _resized(tile, width, height)) for caption, tile in tiles]
+    captions = [_lines(caption, width) for caption, _ in tiles]
+    most = max(len(lines) for lines in captions)
+    cells = [
+        _captioned(lines + [""] * (most - len(lines)), _resized(tile, width, height))
+        for lines, (_, tile) in zip(captions, tiles, strict=True)
+    ]
     while len(cells) % columns:
         cells.append(np.full_like(cells[0], PAPER))
-    rows = [np.concatenate(cells[i : i + columns], axis=1) for i in range(0, len(cells), columns)]
+    gap = np.full((cells[0].shape[0], gap_px, 3), PAPER, np.uint8)
+    rows: list[Rgb] = []
+    for first in range(0, len(cells), columns):
+        row = [part for cell in cells[first : first + columns] for part in (gap, cell)]
+        rows.append(np.concatenate(row[1:], axis=1))
     return np.concatenate(rows, axis=0)
 
 
@@ -122,10 +136,27 @@ def _resized(tile: Rgb, width: int, height: int) -> Rgb:
     return sheet
 
 
-def _captioned(caption: str, tile: Rgb) -> Rgb:
+def _lines(caption: str, width: int) -> list[str]:
+    """The caption in lines that fit over a picture, broken between words."""
+    from PIL import ImageFont
+
+    font = ImageFont.load_default(size=CAPTION_FONT_PX)
+    lines: list[str] = []
+    for word in caption.split(" "):
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and font.getlength(longer) <= width - 2 * CAPTION_MARGIN_PX:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
+
+
+def _captioned(lines: Sequence[str], tile: Rgb) -> Rgb:
     from PIL import Image, ImageDraw, ImageFont
 
-    image = Image.new("RGB", (tile.shape[1], CAPTION_PX), PAPER)
-    font = ImageFont.load_default(size=14)
-    ImageDraw.Draw(image).text((6, CAPTION_PX // 2), caption, fill=INK, font=font, anchor="lm")
+    image = Image.new("RGB", (tile.shape[1], CAPTION_PX * len(lines)), PAPER)
+    font, draw = ImageFont.load_default(size=CAPTION_FONT_PX), ImageDraw.Draw(image)
+    for number, line in enumerate(lines):
+        at = (CAPTION_MARGIN_PX, CAPTION_PX * number + CAPTION_PX // 2)
+        draw.text(at, line, fill=INK, font=font, anchor="lm")
     return np.concatenate([np.asarray(image), tile], axis=0)

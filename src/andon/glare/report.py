@@ -56,7 +56,7 @@ def report(
             "outside": result.pixels.outside,
         },
         "view": _view(result),
-        "observer": asdict(result.eye),
+        "observer": asdict(result.eye) | {"pupil_mm": rounded(result.eye.pupil_mm)},
         "model": _model(result),
         "sources": sources,
         "veil_cd_m2": {
@@ -140,7 +140,7 @@ def warnings_of(result: GlareResult, /) -> tuple[str, ...]:
         (pixels.negative, "negative"),
     ):
         if count:
-            lines.append(f"{count} pixels are {what}; they count as 0")
+            lines.append(f"pixels that are {what}: {count}; they count as 0")
     clipped = sum(source.clipped for source in result.found.sources)
     if clipped:
         lines.append(
@@ -150,6 +150,6 @@ def warnings_of(result: GlareResult, /) -> tuple[str, ...]:
     if result.found.left_out:
         lines.append(
             f"{result.found.left_out} weaker bright regions are not listed; they have "
-            f"{result.found.left_out_share:.1%} of the light of all"
+            f"{result.found.left_out_share:.1%} of all their light"
         )
     return tuple(lines)

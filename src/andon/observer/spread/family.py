@@ -73,7 +73,7 @@ def spread_function(name: str, eye: Eye | None = None, /, *, halo: bool = True) 
             f"scatters {share:.3g} of the light at {eye.age_years:g} years with mist {eye.mist:g}, "
             "more than there is",
             field=f"model {known}",
-            remedy="a younger eye, less mist, or cie135",
+            remedy="a younger eye, less mist" + ("" if known == "cie135" else ", or cie135"),
         )
     return spread
 

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from andon.display.false_colour import GAP_PX
 from andon.files.pictures import read_picture, write_exr, write_hdr, write_png
 from requirements import required
 
@@ -77,7 +78,7 @@ def test_ages_side_by_side(capfd, folder):
     assert "60°" in outcome.err
     assert "relative" in outcome.err
     sheet = read_picture(folder / "ages.png").values
-    gap = 6
+    gap = GAP_PX
     assert sheet.shape[1] == 4 * WIDTH + 3 * gap
     tiles = [sheet[-HEIGHT:, at : at + WIDTH] for at in np.arange(4) * (WIDTH + gap)]
     # Paper between them, and captions of several lines over pictures as narrow as these.

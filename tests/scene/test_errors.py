@@ -62,6 +62,7 @@ CASES = [
     ("[ambient]\nilluminance_lux = 0", "ambient.illuminance_lux: must be > 0 lx, got 0"),
     ("[ambient]\nilluminance_lux = [1, 0, 1]", "ambient.illuminance_lux[1]: must be > 0 lx, got"),
     ("[ambient]\nilluminance_lux = 1\ndimming = -1", "ambient.dimming: must be ≥ 0, got -1"),
+    ("[glare]\nminimum_angle_degrees = 11", "glare.minimum_angle_degrees: must be ≤ 10 °, got 11"),
     ("[observer]\nage = 121", "observer.age: must be ≤ 120, got 121"),
     ("[rig.camera]\nwidth = 0", "rig.camera.width: must be ≥ 1, got 0"),
     ("[rig.camera]\nhfov_degrees = 180", "rig.camera.hfov_degrees: must be < 180° for pinhole"),

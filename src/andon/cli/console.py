@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ __all__ = [
     "note",
     "print_report",
     "printable",
+    "steps",
 ]
 
 
@@ -31,6 +33,19 @@ class Interrupted(AndonError):
 def note(message: str) -> None:
     """A line on stderr that is worth reading but no failure."""
     print(f"andon: {message}", file=sys.stderr)
+
+
+@contextmanager
+def steps(what: str, total: int, /) -> Generator[Callable[[], None]]:
+    """A bar on stderr of work in `total` steps; what is given says that one is done."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True)
+    # Where nobody looks at it, all that is left of a bar is an empty line.
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(what, total=total)
+        yield lambda: bar.advance(task)
 
 
 def printable(text: str) -> str:

@@ -9,7 +9,7 @@ from time import perf_counter
 
 import numpy as np
 
-from andon.cli.console import print_report
+from andon.cli.console import print_report, steps
 from andon.errors import InputError, MachineError, nearest_name
 
 __all__ = ["run"]
@@ -50,7 +50,7 @@ def _glass(folder: Path, out: Path, engine: str) -> None:
 
 
 def _glare(folder: Path, out: Path, engine: str) -> None:
-    from andon.display.false_colour import contact_sheet
+    from andon.display.false_colour import GAP_PX, contact_sheet
     from andon.engines.glare import glare_of
     from andon.engines.prepared import prepare
     from andon.files.pictures import write_picture
@@ -66,13 +66,15 @@ def _glare(folder: Path, out: Path, engine: str) -> None:
         glare = None if scene is None else glare_of(scene, prepared.frames, dimming)
         return Renderer(replace(prepared, glare=glare), engine).render()  # type: ignore[arg-type]
 
-    tiles = [("without glare", seen(None).image.rgb)]
-    for age in AGES:
-        observer = scene.observer.model_copy(update={"age": age})
-        frame = seen(scene.model_copy(update={"observer": observer}))
-        tiles.append((f"{age:.0f} years", frame.image.rgb))
+    with steps("drawing", 1 + len(AGES)) as step:
+        tiles = [("without glare", seen(None).image.rgb)]
+        for age in AGES:
+            step()
+            observer = scene.observer.model_copy(update={"age": age})
+            frame = seen(scene.model_copy(update={"observer": observer}))
+            tiles.append((f"{age:.0f} years", frame.image.rgb))
     write_picture(out / "glare.png", tiles[-1][1])
-    write_picture(out / "glare-ages.png", contact_sheet(tiles, columns=2))
+    write_picture(out / "glare-ages.png", contact_sheet(tiles, columns=2, gap_px=GAP_PX))
     print(f"{perf_counter() - start:.1f} s in all; look at {out / 'glare-ages.png'}")
 
 

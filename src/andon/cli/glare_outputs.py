@@ -35,8 +35,6 @@ MIDDLE_GREY = 0.18
 BLACK = 1e-4
 # Sheets are not wider than this.
 SHEET_PX = 3200
-# Between the pictures of a sheet.
-GAP_PX = 6
 
 
 def auto_exposure(seen: Calibrated) -> float:
@@ -81,13 +79,13 @@ def caption(result: GlareResult) -> str:
     unit = "cd/m2" if result.photometry == "absolute" else "(relative)"
     return (
         f"{eye.age_years:g} years, pigment {eye.pigment:g}, pupil {eye.pupil_mm:.1f} mm, "
-        f"{result.model.name}: veil ahead {veil:.3g} {unit}"
+        f"{result.model.name}: veil at the gaze {veil:.3g} {unit}"
     )
 
 
 def sheet(tiles: Sequence[tuple[str, Rgb]]) -> Rgb:
     """Captioned pictures side by side, or one below the other where they are wide."""
-    from andon.display.false_colour import contact_sheet
+    from andon.display.false_colour import GAP_PX, contact_sheet
 
     most = max(1, SHEET_PX // tiles[0][1].shape[1])
     # As many rows as that takes, evenly filled.

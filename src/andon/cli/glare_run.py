@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.cli.console import check_apart, check_writable, note
+from andon.cli.console import check_apart, check_writable, note, steps
 from andon.cli.glare import GlareOptions
 from andon.cli.glare_typed import ages_of, exposure_of, eye_of, gaze_of, model_of, one_of, view_of
 from andon.errors import InputError
@@ -92,20 +92,14 @@ def _read(options: GlareOptions) -> Calibrated:
 
 
 def _results(options: GlareOptions, seen: Calibrated, ages: tuple[float, ...]) -> list[GlareResult]:
-    from rich.console import Console
-    from rich.progress import Progress
-
     from andon.glare.picture import glare_of_picture
 
     level = _level(seen)
     gaze = gaze_of(options.gaze, seen.view)
     renderer: Any = options.renderer
     engine: Any = options.engine
-    console = Console(stderr=True)
     results: list[GlareResult] = []
-    # Where nobody looks at it, all that is left of a bar is an empty line.
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("scattering", total=len(ages))
+    with steps("scattering", len(ages)) as step:
         for age in ages:
             results.append(
                 glare_of_picture(
@@ -121,7 +115,7 @@ def _results(options: GlareOptions, seen: Calibrated, ages: tuple[float, ...]) -
                     shows=seen.shows,
                 )
             )
-            bar.advance(task)
+            step()
     return results
 
 

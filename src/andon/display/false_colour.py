@@ -8,13 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["contact_sheet", "depth_picture", "false_colour", "normal_picture"]
+__all__ = ["GAP_PX", "contact_sheet", "depth_picture", "false_colour", "normal_picture"]
 
 Rgb = NDArray[np.uint8]
 
 BAR_WIDTH_PX = 74
 # Height of a line of a caption, of its letters, and its distance from the border.
 CAPTION_PX, CAPTION_FONT_PX, CAPTION_MARGIN_PX = 22, 14, 6
+# Between pictures side by side, where they would run into each other.
+GAP_PX = 6
 # Above the scale there is room for a line with the unit, below for half of the last label.
 ABOVE_PX, BELOW_PX = 28, 10
 # Height of a label of 12 px, with the air that keeps it apart from the next.

@@ -11,7 +11,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -126,8 +126,14 @@ def glare_of_picture(
     ------
     InputError
         for a picture of another size than the view, without pixels or with more than 2²⁵, and
-        for a model that is not known.
+        for a model, renderer or engine that is not known.
     """
+    for field, value, known in (
+        ("renderer", renderer, get_args(Renderer)),
+        ("engine", engine, get_args(EngineName)),
+    ):
+        if value not in known:
+            raise InputError(f"must be one of {', '.join(known)}, got {value!r}", field=field)
     pixels = cleaned(luminance_cd_m2, view, shows)
     eye = Eye() if eye is None else eye
     spread = _spread(model, eye)

@@ -10,6 +10,9 @@ from andon.scene.base import Count, Fraction, NonNegative, Positive, Reference, 
 
 __all__ = ["Atmosphere", "Display", "Gaze", "Glare", "Observer"]
 
+# A veil begins near its source: light that is scattered fades out from 90° on.
+MinimumAngle = Annotated[float, Field(gt=0, le=10)]
+
 
 class Observer(Table):
     """Whose eyes."""
@@ -192,7 +195,7 @@ class Glare(Table):
         description="Of the eye: whether it sees the ring, and the weights of the model spencer; "
         "auto: by the mean luminance of the photograph.",
     )
-    minimum_angle_degrees: Positive = Field(
+    minimum_angle_degrees: MinimumAngle = Field(
         default=0.1,
         description="Light scattered by less than this stays where it is, degrees.",
     )

@@ -146,11 +146,15 @@ def test_too_many_pixels_are_refused_with_the_limit():
         glare_of_picture(light, huge)
 
 
-def test_an_unknown_model_and_a_gaze_that_is_none():
+def test_unknown_names_and_a_gaze_that_is_none():
     with pytest.raises(InputError, match="cie135"):
         glare_of_picture(night(ROAD), ROAD, model="nobody")
     with pytest.raises(InputError, match="gaze"):
         glare_of_picture(night(ROAD), ROAD, gaze=np.zeros(3))
+    with pytest.raises(InputError, match=r"renderer: must be one of .*per-source"):
+        glare_of_picture(night(ROAD), ROAD, renderer="fast")
+    with pytest.raises(InputError, match=r"engine: must be one of .*reference"):
+        glare_of_picture(night(ROAD), ROAD, engine="cuda")
 
 
 def test_a_black_picture_stays_black():

@@ -6,10 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from rich.console import Console
-from rich.progress import Progress
-
-from andon.cli.console import note
+from andon.cli.console import note, steps
 from andon.cli.figures.leaves import FRAME_SECONDS, draw_komorebi
 from andon.cli.figures.model import Asked, Draw, Figure
 from andon.cli.figures.needle_model import draw_model
@@ -36,13 +33,10 @@ def run(options: FiguresOptions) -> None:
     """Draws and writes. Raises `InputError` before anything is written."""
     asked, numbers = _checked(options)
     draws = _draws(options, asked, numbers)
-    steps = sum(steps for steps, _ in draws)
     figures: list[Figure] = []
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("drawing", total=steps)
+    with steps("drawing", sum(count for count, _ in draws)) as step:
         for _, draw in draws:
-            figures += draw(asked, partial(bar.advance, task))
+            figures += draw(asked, step)
     _write(options, figures)
     print(options.out / SHEET)
 

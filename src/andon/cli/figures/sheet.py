@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from andon.cli.figures.model import Figure
-from andon.display.false_colour import INK, PAPER, contact_sheet
+from andon.display.false_colour import GAP_PX, INK, PAPER, contact_sheet
 
 __all__ = ["row_of", "sheet_of"]
 
@@ -36,7 +36,8 @@ def sheet_of(figures: Sequence[Figure], /) -> Rgb:
     """(H, 1440, 3): figures from above to below, each as wide as the sheet."""
     rows: list[Rgb] = []
     for figure in figures:
-        row = row_of(figure, SHEET_PX // len(figure.panels))
+        count = len(figure.panels)
+        row = row_of(figure, (SHEET_PX - (count - 1) * GAP_PX) // count)
         rows += [_title(figure), _filled(row)]
     return np.concatenate(rows)
 
@@ -47,7 +48,7 @@ def row_of(figure: Figure, width: int | None = None, /) -> Rgb:
         (panel.caption, panel.picture if width is None else _sized(panel.picture, width))
         for panel in figure.panels
     ]
-    return contact_sheet(tiles, columns=len(tiles))
+    return contact_sheet(tiles, columns=len(tiles), gap_px=GAP_PX)
 
 
 def _title(figure: Figure) -> Rgb:

@@ -12,6 +12,8 @@ from andon.composite.reference import lamp_luminance, object_luminance, relit_li
 from andon.engines.prepared import prepare
 from andon.errors import InputError
 from andon.files.pictures import read_picture, write_picture
+from andon.glare.kernel import Kernel
+from andon.glare.picture import glare_of_picture
 from andon.glass.layers import Layers
 from andon.glow.model import Glow
 from andon.glow.reference import add_glow
@@ -28,8 +30,10 @@ from andon.lamps import (
 )
 from andon.lamps.distributions import spot_attenuation
 from andon.lamps.sources import resolve_sources
+from andon.observer.spread.family import spread_function
 from andon.quantities import CameraFrame, photometric
 from andon.responses import SRGB
+from andon.spaces import View
 from andon.transport.direct.reference import illuminance
 
 from .settings import ORIGIN, VIEW, WHITE, X, Y, Z, close, grey, lamps_of, relit
@@ -257,6 +261,23 @@ def test_glow():
     close(lit.sum(), picture.sum(), rtol=0.02)  # but for what falls beyond the border
     assert 10 + 0.6 * 90 < lit[1, 2, 0] < 100
     assert lit[1, 1, 0] > 10
+
+
+def test_glare():
+    kernel = Kernel(spread_function("cie135"))
+    # The CIE's own value at 1°; the kernel takes radians.
+    close(kernel.per_sr(np.radians(1.0)), 18.8647, rtol=1e-3)
+    sphere = View("latlong", 64, 32)
+    light = np.full((*sphere.shape, 3), 1e-3)
+    light[20, 10] = 1e4
+    sent = light.sum(axis=-1) * sphere.solid_angles()
+    result = glare_of_picture(light, sphere, engine="reference", with_stars=False)
+    # 60° from the light: a cosine would halve it.
+    seen, source = sphere.directions()[20, [22, 10]]
+    lux = 1e4 * sphere.solid_angles()[20, 10]
+    close(result.veil[20, 22, 1], kernel.per_sr(np.arccos(seen @ source)) * lux, rtol=0.02)
+    total = (result.picture.sum(axis=-1) * sphere.solid_angles()).sum()
+    close(total, sent.sum(), rtol=0.005)
 
 
 def test_dimming_is_linear():

@@ -84,6 +84,23 @@ def test_needles_are_of_one_eye(engine, tmp_path):
     assert np.abs(one - other).sum() > 0.01 * bloom.sum()
 
 
+def test_needles_of_a_relative_scene_do_not_know_its_unit(engine, tmp_path):
+    def glare(unit, needles):
+        lit = room(
+            tmp_path,
+            scene={"photometry": "relative"},
+            observer={"pupil_mm": 6.0},
+            lamp=[BULB | {"flux_lm": 60.0 * unit}],
+            ambient={"illuminance_lux": 2.0 * unit},
+            glare={"model": "cie135", "halo": False, "needles": needles},
+        )
+        return np.asarray(Renderer(lit, engine).render().glare.cd_m2, float).sum() / unit
+
+    dim, bright = (glare(unit, True) - glare(unit, False) for unit in (0.1, 10.0))
+    assert dim > 0
+    assert bright == pytest.approx(dim, rel=0.02)
+
+
 def test_what_the_sensor_clipped_glares_as_brightly_as_it_is_stated(engine, tmp_path):
     def veil(**capture):
         lit = room(tmp_path, lamp=[], capture={"source": "photo.png", **capture})

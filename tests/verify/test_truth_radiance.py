@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from andon.errors import InputError, MachineError
+from andon.files import radiance_programs
 from andon.quantities import Geometry, Material
 from andon.spaces import View, look_at
 from andon.verify.rooms import furnished_room, lamps_in
 from andon.verify.solids import icosphere, panel
-from andon.verify.truths import radiance
 from andon.verify.truths.embree import Visibility
 from andon.verify.truths.radiance import (
     AreaSource,
@@ -266,7 +266,7 @@ def test_a_run_over_the_time_limit_is_the_machines_fault(monkeypatch):
         TimeoutExpired = subprocess.TimeoutExpired
         run = staticmethod(sleeper)
 
-    monkeypatch.setattr(radiance, "subprocess", Slow)
+    monkeypatch.setattr(radiance_programs, "subprocess", Slow)
     scene = RadianceScene(FLOOR, [], time_limit_seconds=0.05)
     with pytest.raises(MachineError, match=r"more than 0\.05 s"), scene:
         pass
@@ -280,7 +280,7 @@ def test_a_failing_program_is_reported_with_its_words():
 
 
 def test_missing_radiance_says_how_to_install_it(monkeypatch):
-    monkeypatch.setattr(radiance, "find_spec", lambda name: None)
+    monkeypatch.setattr(radiance_programs, "find_spec", lambda name: None)
     with pytest.raises(MachineError, match=r"pip install 'andon\[radiance\]'"):
         irradiance(FLOOR, [], *floor_points(1))
 

@@ -14,7 +14,7 @@ from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.layout import HostStruct
 from andon.gpu.passes import FullscreenPass
-from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
+from andon.gpu.textures import HALF_MOST, Texture, make_texture, uniform_buffer, write_buffer
 from andon.quantities import CameraFrame, DisplayImage, Luminance, Photometry
 
 __all__ = ["OST_RECORD", "OstStage"]
@@ -23,7 +23,6 @@ OST_RECORD = HostStruct(
     "OstRecord", (("peak", "f32"), ("transmittance", "f32"), ("compensation", "u32"))
 )
 STRUCTS = {OST_RECORD.name: OST_RECORD}
-HALF_MOST = 65504.0  # the largest half float
 
 
 class OstStage:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from andon.engines.adaptation import adaptation_cd_m2
 from andon.errors import InputError
-from andon.glare.around import Around, around
+from andon.glare.around import Around, around, needles_within
 from andon.glare.kernel import Kernel
 from andon.glare.needles.model import NeedleModel, Which
 from andon.glare.per_source.reference import veil_share
@@ -88,12 +88,16 @@ class SceneGlare:
         )
 
 
-def taken_share(found: LiveSources, seen: Around, /) -> Float:
-    """(3,) share of the sources' light that halo and needles are made of, all of them alike."""
+def taken_share(found: LiveSources, seen: Around, bloom_share: float, /) -> Float:
+    """(3,) share of all bright light that halo, needles and bloom of the sources are made of.
+
+    All that is bright gives alike, be it one of the sources or beyond the most that are kept.
+    """
     if not found.sources:
         return np.zeros(3)
     lux = np.array([source.illuminance_lux for source in found.sources])
-    return (seen.taken * lux).sum(axis=0) / np.maximum(lux.sum(axis=0), 1e-30)
+    around = (seen.taken * lux).sum(axis=0) / np.maximum(lux.sum(axis=0), 1e-30)
+    return found.kept_share * (around + bloom_share)
 
 
 def glare_of(
@@ -106,8 +110,8 @@ def glare_of(
     table = scene.glare
     if table is None or table.model == "glow":
         return None
-    adapted = adaptation_cd_m2(scene, frames, dimming)
-    adapted = EVENING_CD_M2 if scene.photometry == "relative" else adapted
+    mean = adaptation_cd_m2(scene, frames, dimming)
+    adapted = EVENING_CD_M2 if scene.photometry == "relative" else mean
     eye = eye_of(scene.observer, scene.atmosphere, adapted, table.adaptation)
     try:
         spread = spread_function(table.model, eye, halo=table.halo)
@@ -122,9 +126,27 @@ def glare_of(
         kernel,
         table.highlight_contrast,
         table.highlights,
-        replace(NeedleModel(), contrast=table.highlight_contrast) if table.needles else None,
+        needles_within(kernel, _needle_model(scene, table.highlight_contrast, mean))
+        if table.needles
+        else None,
         scene.scene.seed if table.seed is None else table.seed,
         {name: plan_whole(frame.view, kernel) for name, frame in frames.items()} if whole else {},
+    )
+
+
+def _needle_model(scene: Scene, contrast: float, adapted_cd_m2: float) -> NeedleModel:
+    """The needles' constants, in the scene's unit of light.
+
+    Needles go by absolute light. A relative scene is taken to be as bright as an evening.
+    """
+    model = replace(NeedleModel(), contrast=contrast)
+    if scene.photometry != "relative" or not adapted_cd_m2 > 0:
+        return model
+    unit = adapted_cd_m2 / EVENING_CD_M2
+    return replace(
+        model,
+        illuminance_lux=unit * model.illuminance_lux,
+        background_cd_m2=unit * model.background_cd_m2,
     )
 
 

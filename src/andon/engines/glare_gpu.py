@@ -19,8 +19,8 @@ from andon.glare.whole_picture.stage import WholePictureStage
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.layout import HostStruct
-from andon.gpu.passes import FullscreenPass, color_attachment
-from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
+from andon.gpu.passes import PLUS, FullscreenPass, color_attachment
+from andon.gpu.textures import HALF_MOST, Texture, make_texture, uniform_buffer, write_buffer
 from andon.lamps import Lamp
 from andon.quantities import CameraFrame, Geometry
 from andon.transport.direct.records import MAX_LAMPS
@@ -29,11 +29,6 @@ __all__ = ["GlareView"]
 
 SHARP = "andon/glare/sharp.wgsl"
 TAKEN_SHARE = HostStruct("TakenShare", (("taken", "vec3f"), ("least", "f32")))
-HALF_MOST = float(np.finfo(np.float16).max)
-PLUS = {
-    part: {"operation": "add", "src_factor": "one", "dst_factor": "one"}
-    for part in ("color", "alpha")
-}
 
 
 class GlareView:
@@ -102,7 +97,9 @@ class GlareView:
 
     def update(self, lamps: Sequence[Lamp]) -> None:
         """Finds the sources, once what was recorded has run."""
-        found, unpictured = self._unpictured.split(lamps, self._find.read(), self.view)
+        found, unpictured = self._unpictured.split(
+            lamps, self._find.read(), self.view, blooms=self._veil is None
+        )
         self.found = found
         self._lamps.update(unpictured, self.glare.kernel)
         seen = self.glare.around(found, self.view)
@@ -115,7 +112,7 @@ class GlareView:
             weights=seen.halo_weights.tolist(),
             settings=PerSource(bloom_drawn=self._veil is None),
         )
-        share = taken_share(found, seen) + self.glare.bloom_share(self.view)
+        share = taken_share(found, seen, self.glare.bloom_share(self.view))
         self._taken.update(found, share, self.glare.contrast)
 
     def encode(self, encoder: Any) -> None:

@@ -16,17 +16,17 @@ from numpy.typing import NDArray
 from andon.glare.lamp_sources import source_of_lamp
 from andon.glare.model import Source
 from andon.glare.sources.live import LiveSources
-from andon.lamps import AreaLamp, DirectionalLamp, Lamp, PointLamp
+from andon.lamps import AreaLamp, Lamp, PointLamp, SphereLamp
 from andon.lamps.kinds import middle_of_area
 from andon.quantities import Geometry
 from andon.rays import RayScene
-from andon.spaces import View
+from andon.spaces import View, rotate
 
 __all__ = ["UnpicturedLamps"]
 
 Float = NDArray[np.float64]
 
-# Points on a source, of equal solid angle, by which its share beside the picture is told.
+# Points on a source by which its shares beside the picture and behind other things are told.
 POINTS = 64
 GOLDEN_TURN = np.pi * (3 - np.sqrt(5))
 # A source found is the lamp that is nearer to it than so many radii of the lamp.
@@ -36,7 +36,7 @@ FAR_M = 1e4
 
 
 class UnpicturedLamps:
-    """Visible lamps as round sources. Whether anything hides one is asked of its middle alone."""
+    """Visible lamps as round sources; what hides a part of a ball is asked of points on it."""
 
     def __init__(self, geometry: Geometry, most_cd_m2: float = np.inf) -> None:
         """`most_cd_m2`: the greatest luminance that the picture holds, in each channel."""
@@ -47,12 +47,13 @@ class UnpicturedLamps:
         return RayScene(self._geometry) if len(self._geometry.triangles) else None
 
     def split(
-        self, lamps: Sequence[Lamp], found: LiveSources, view: View, /
+        self, lamps: Sequence[Lamp], found: LiveSources, view: View, /, *, blooms: bool
     ) -> tuple[LiveSources, list[Source]]:
         """The sources found with the light that the picture cut, and what it does not hold.
 
         The first are for needles, which go by all of a source's light; the second for bloom, which
-        the picture's own light has already.
+        the picture's own light has already. With `blooms` the first have their own bloom, too, so
+        that what was given to them is not among the second.
         """
         sources, left = list(found.sources), list[Source]()
         for lamp in lamps:
@@ -60,44 +61,56 @@ class UnpicturedLamps:
             if source is None:
                 continue
             source = source.rounded()
-            beside = _share_beside(source, view)
-            cut = 1 - np.minimum(source.luminance_cd_m2, self._most) / np.maximum(
-                source.luminance_cd_m2, np.finfo(float).tiny
+            points = _points_on(source)
+            inside = _in_picture(points, view)
+            luminance = source.luminance_cd_m2
+            cut = 1 - np.minimum(luminance, self._most) / np.maximum(
+                luminance, np.finfo(float).tiny
             )
-            share = beside + (1 - beside) * cut
-            if not share.any() or not self._is_seen(lamp, view):
+            if inside.all() and not cut.any():
                 continue
-            left.append(replace(source, illuminance_lux=share * source.illuminance_lux))
-            if beside < 1:
-                _complete(sources, source, cut)
+            visible = self._visible(lamp, points, view)
+            beside, held = np.mean(visible & ~inside), np.mean(visible & inside) * cut
+            is_found = _complete(sources, source, held) if held.any() else False
+            share = beside + np.zeros(3) if blooms and is_found else beside + held
+            if share.any():
+                left.append(replace(source, illuminance_lux=share * source.illuminance_lux))
         return replace(found, sources=tuple(sources)), left
 
-    def _is_seen(self, lamp: Lamp, view: View) -> bool:
+    def _visible(self, lamp: Lamp, points: Float, view: View) -> NDArray[np.bool_]:
+        """(n,) bool: nothing hides the points of a lamp in the unit directions (n, 3).
+
+        Of flat and long lamps the middle is asked for all: what is round in their place would reach
+        into the ceiling that they hang from.
+        """
         if self._rays is None:
-            return True
-        if isinstance(lamp, DirectionalLamp):
-            place = view.position - FAR_M * lamp.direction
-        elif isinstance(lamp, PointLamp):
-            place = lamp.position_m
-        else:
-            assert isinstance(lamp, AreaLamp)  # others are no sources
-            place = middle_of_area(lamp)
-        return bool(self._rays.is_visible(view.position[None], place)[0])
+            return np.ones(len(points), bool)
+        eye = view.position
+        if isinstance(lamp, AreaLamp) and not isinstance(lamp, SphereLamp):
+            seen = self._rays.is_visible(eye[None], middle_of_area(lamp))
+            return np.full(len(points), bool(seen[0]))
+        distance = FAR_M
+        if isinstance(lamp, PointLamp | SphereLamp):
+            distance = float(np.linalg.norm(lamp.position_m - eye))
+        places = eye + distance * rotate(view.world_from_camera, points)
+        return self._rays.is_visible(np.broadcast_to(eye, places.shape), places)
 
 
-def _complete(sources: list[Source], lamp: Source, cut: Float) -> None:
-    """Gives the source that a lamp was found as the light that was cut from it."""
+def _complete(sources: list[Source], lamp: Source, share: Float) -> bool:
+    """Gives the source that a lamp was found as a share of the lamp's light; False: it was not."""
     reach = NEAR_OUTLINES * float(lamp.outline.radii_radians[0])
     apart = [float(np.linalg.norm(each.direction - lamp.direction)) for each in sources]
     if not apart or min(apart) > reach:
-        return
+        return False
     number = int(np.argmin(apart))
-    light = sources[number].illuminance_lux / np.maximum(1 - cut, 1e-30)
+    # Added, not scaled: two lamps that touch in the picture are one source there.
+    light = sources[number].illuminance_lux + share * lamp.illuminance_lux
     sources[number] = replace(sources[number], illuminance_lux=light)
+    return True
 
 
-def _share_beside(source: Source, view: View) -> float:
-    """Share of a round source's solid angle that is not in the picture."""
+def _points_on(source: Source) -> Float:
+    """(POINTS, 3) unit directions over a round source, each of an equal part of its solid angle."""
     right, down = source.axes
     radius = float(source.outline.radii_radians[0])
     index = np.arange(POINTS) + 0.5
@@ -105,8 +118,11 @@ def _share_beside(source: Source, view: View) -> float:
     theta = 2 * np.arcsin(np.sin(radius / 2) * np.sqrt(index / POINTS))
     phi = GOLDEN_TURN * index
     across = np.cos(phi)[:, None] * right + np.sin(phi)[:, None] * down
-    points = np.cos(theta)[:, None] * source.direction + np.sin(theta)[:, None] * across
-    pixels = view.project(points) + 0.5
+    return np.cos(theta)[:, None] * source.direction + np.sin(theta)[:, None] * across
+
+
+def _in_picture(directions: Float, view: View) -> NDArray[np.bool_]:
+    """(n,) bool of directions (n, 3) in the camera's frame."""
+    pixels = view.project(directions) + 0.5
     with np.errstate(invalid="ignore"):  # behind a pinhole
-        inside = ((pixels >= 0) & (pixels < view.shape[::-1])).all(axis=-1)
-    return float(1 - inside.mean())
+        return np.all((pixels >= 0) & (pixels < view.shape[::-1]), axis=-1)

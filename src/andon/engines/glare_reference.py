@@ -40,13 +40,13 @@ def glare_seen(
     if mirrored is not None and not own.highlights:
         shining = np.maximum(light - mirrored, 0)
     found = own.finder(view).find(survey(shining), lambda rows, columns: shining[rows, columns])
-    found, unpictured = hiding.split(lamps, found, view)
+    found, unpictured = hiding.split(lamps, found, view, blooms=not own.plans)
     seen, sources = own.around(found, view), [source.rounded() for source in found.sources]
     added = draw(seen.needles, view) + veil_of_sources(unpictured, view, own.kernel)
     if own.ring is not None:
         weights = seen.halo_weights.tolist()
         added += halos_of_sources(sources, view, own.kernel, own.ring, weights=weights)
-    share = taken_share(found, seen) + own.bloom_share(view)
+    share = taken_share(found, seen, own.bloom_share(view))
     least = gate(photometric(shining), found.ambient_cd_m2, contrast=own.contrast)
     taken = shining * share * least[..., None]
     if not own.plans:

@@ -28,7 +28,7 @@ from andon.glow.stage import GlowStage
 from andon.gpu.bindings import BindGroup, bind_group
 from andon.gpu.device import Gpu, open_gpu
 from andon.gpu.passes import FullscreenPass
-from andon.gpu.textures import Texture, make_texture
+from andon.gpu.textures import HALF_MOST, Texture, make_texture
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface.model import SurfaceModel
 from andon.surface.stage import GpuSurface, SurfaceStage
@@ -351,5 +351,6 @@ class GpuEngine:
         return alone, self._cd_m2(view.filtered, frame)
 
     def _cd_m2(self, picture: Texture, frame: CameraFrame) -> Luminance:
-        linear = picture.read()[..., :3].astype(np.float32)
+        # Sums beyond half floats are infinite on most devices.
+        linear = np.minimum(picture.read()[..., :3].astype(np.float32), HALF_MOST)
         return Luminance(linear * np.float32(frame.luminance_per_unit), self.prepared.photometry)

@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.engines.probes import SceneProbes
 from andon.glare.highlights.model import LEAST_ALPHA, Finish
 from andon.glare.highlights.waves import make_waves
 from andon.quantities import Material
@@ -17,7 +16,6 @@ from andon.scene import Scene
 from andon.scene.keyframes import object_at
 from andon.scene.objects import SceneObject
 from andon.surface.model import SurfaceModel
-from andon.transport.probes.light import probe_coefficients
 
 __all__ = ["SceneHighlights", "finish_of", "highlights_of"]
 
@@ -38,27 +36,6 @@ class SceneHighlights:
 
     finishes: tuple[Finish | None, ...]
     entries: tuple[SceneObject | None, ...]
-
-    def probe_lux(
-        self, probes: SceneProbes | None, surface: SurfaceModel, middles: Float, /
-    ) -> Float | None:
-        """(m, 3) lux of probes at the mirroring objects that they light; None without any.
-
-        The mean over all directions, at the objects' `middles` (objects, 3).
-        """
-        if probes is None:
-            return None
-        mirroring = {
-            int(surface.object_of_slot[slot])
-            for slot, finish in enumerate(self.finishes)
-            if finish is not None
-        }
-        chosen = [row for row in mirroring if surface.objects_table[row].lit_by_probes]
-        if not chosen:
-            return None
-        # The first coefficient is the mean luminance times √(4π).
-        mean = probe_coefficients(probes.dimmed, middles[chosen])[:, 0] / np.sqrt(4 * np.pi)
-        return np.pi * np.maximum(mean, 0)
 
     def at(self, time_seconds: float, /) -> tuple[Finish | None, ...]:
         """The finishes with their axes in the world."""

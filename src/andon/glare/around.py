@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from andon.glare.needles.model import Needles, Which
 from andon.glare.per_source.halos import halo_table
 from andon.observer.spread.model import Eye
 
-__all__ = ["Around", "around"]
+__all__ = ["Around", "around", "needles_within"]
 
 Float = NDArray[np.float64]
 
@@ -24,6 +24,10 @@ Float = NDArray[np.float64]
 # of one that is as wide as they are (3°) fill each other's middle. A ring at the outline would be
 # seen around façades that in truth have none.
 RING_SEEN_DEGREES, RING_LOST_DEGREES = 0.75, 1.5
+
+
+# Share of its light that a source keeps: the veil's sums of Gaussians may take so much more.
+LEAST_LEFT = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +80,16 @@ def around(
         ]
         taken += np.array([star.share for star in stars]).reshape(-1, 1)
     return Around(tuple(stars), weights, taken)
+
+
+def needles_within(kernel: Kernel, model: NeedleModel, /) -> NeedleModel:
+    """`model` with no more light than the veil and the ring of `kernel` leave in a source.
+
+    In thick mist they leave little, and a source cannot be darker than black.
+    """
+    ring = _halo_share(kernel).max() if kernel.spread.halo_per_sr is not None else 0.0
+    left = 1 - LEAST_LEFT - kernel.share - kernel.core_share - float(ring)
+    return model if model.share <= left else replace(model, share=max(left, 0.0))
 
 
 def _ring_seen(source: Source) -> float:

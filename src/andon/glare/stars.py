@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.glare.around import around
+from andon.glare.around import around, needles_within
 from andon.glare.gate import HIGHLIGHT_CONTRAST
 from andon.glare.kernel import Kernel
 from andon.glare.needles import NeedleModel
@@ -65,7 +65,7 @@ def stars_of(
         kernel,
         seed=seed,
         which=which,
-        needles=NeedleModel() if model is None else model,
+        needles=needles_within(kernel, NeedleModel() if model is None else model),
         contrast=HIGHLIGHT_CONTRAST,
     )
     stars = [star for star in seen.needles if len(star)]

@@ -1,6 +1,8 @@
 // What halo and needles are made of is taken from the pixels of their sources.
 
 //!import andon/glare/gate.wgsl
+//!import andon/glare/usable.wgsl
+//!import andon/gpu/photometric.wgsl
 //!struct TakenShare
 
 @group(0) @binding(0) var light: texture_2d<f32>;
@@ -8,8 +10,7 @@
 
 // Blended onto the picture: negative.
 @fragment fn taken(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
-  let source = textureLoad(light, vec2i(pixel.xy), 0).rgb;
-  let usable = select(vec3f(0.0), min(source, vec3f(65504.0)), source > vec3f(0.0));
-  let value = dot(usable, vec3f(0.2126, 0.7152, 0.0722));
-  return vec4f(-share.taken * usable * gate(value, share.least), 0.0);
+  let source = usable(textureLoad(light, vec2i(pixel.xy), 0).rgb);
+  let value = photometric(source);
+  return vec4f(-share.taken * source * gate(value, share.least), 0.0);
 }

@@ -9,7 +9,7 @@ from andon.glow.model import Glow
 from andon.glow.plan import Span, plan_axis
 from andon.gpu.bindings import BindGroup, bind_group
 from andon.gpu.device import Gpu
-from andon.gpu.passes import FullscreenPass, color_attachment
+from andon.gpu.passes import PLUS, FullscreenPass, color_attachment
 from andon.gpu.textures import Texture, make_texture
 from andon.spaces import View
 
@@ -26,10 +26,6 @@ FORMAT = "rgba16float"
 BETWEEN = "rgba32float"
 MODULE = "andon/glow/glow.wgsl"
 AXIS = "andon/glow/axis.wgsl"
-ADD = {
-    part: {"operation": "add", "src_factor": "one", "dst_factor": "one"}
-    for part in ("color", "alpha")
-}
 
 
 class GlowStage:
@@ -84,7 +80,7 @@ class GlowStage:
             [target],
             [self._group(source, bodies)],
             variants={AXIS: plan.wgsl(axis == "x", self.glow.fraction, BODY_LIMIT)},
-            blend=ADD if bodies else None,
+            blend=PLUS if bodies else None,
         )
 
     def _group(self, source: Texture, bodies: Texture | None) -> BindGroup:

@@ -10,8 +10,13 @@ from andon.gpu.device import Gpu
 from andon.gpu.layout import HostStruct
 from andon.gpu.wgsl import resolve
 
-__all__ = ["FullscreenPass", "color_attachment", "pipeline_layout", "shader_module"]
+__all__ = ["PLUS", "FullscreenPass", "color_attachment", "pipeline_layout", "shader_module"]
 
+# Blending that adds to what is there, alpha too.
+PLUS = {
+    part: {"operation": "add", "src_factor": "one", "dst_factor": "one"}
+    for part in ("color", "alpha")
+}
 # One triangle that covers the screen: cheaper than two, and no diagonal seam.
 FULLSCREEN_VERTEX = """
 @vertex fn fullscreen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {

@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from andon.errors import MachineError
 from andon.gpu.device import Gpu
 
-__all__ = ["Texture", "make_texture", "uniform_buffer", "write_buffer"]
+__all__ = ["HALF_MOST", "Texture", "make_texture", "uniform_buffer", "write_buffer"]
 
+# The largest half float.
+HALF_MOST = 65504.0
 # WebGPU copies rows at multiples of this many bytes (WebGPU specification, 3.6.2).
 ROW_ALIGNMENT = 256
 

@@ -170,11 +170,13 @@ class Glare(Table):
     )
     renderer: Literal["auto", "per-source", "whole-picture"] = Field(
         default="auto",
-        description="Around each source, or a filter over the picture.",
+        description="per-source: the light of the sources that are found, around each; "
+        "whole-picture: all light. auto: whole-picture.",
     )
     highlights: bool = Field(
         default=True,
-        description="Highlights on virtual metal and water glare too.",
+        description="Highlights of lamps on virtual metal and water have halo and needles, too; "
+        "their veil they always have, unless the renderer is per-source.",
     )
     highlight_contrast: Positive = Field(
         default=40.0,
@@ -190,7 +192,8 @@ class Glare(Table):
     )
     adaptation: Literal["auto", "photopic", "mesopic", "scotopic"] = Field(
         default="auto",
-        description="Of the eye: weighs spencer's terms and the ring; auto: by the ambient light.",
+        description="Of the eye: whether it sees the ring, and the weights of the model spencer; "
+        "auto: by the mean luminance of the photograph.",
     )
     minimum_angle_degrees: MinimumAngle = Field(
         default=0.1,

@@ -68,7 +68,7 @@ def assert_same_veil(actual, expected):
     assert_agree(actual, expected, rtol=3 * SAME, what="veil")
     difference = np.sqrt(((actual - expected) ** 2).sum() / (expected**2).sum())
     assert difference < SAME
-    assert_agree(actual.sum(axis=(0, 1)), expected.sum(axis=(0, 1)), rtol=SAME)
+    assert_agree(actual.sum(axis=(0, 1)), expected.sum(axis=(0, 1)), rtol=2e-3)
 
 
 @pytest.mark.parametrize("name", VIEWS)

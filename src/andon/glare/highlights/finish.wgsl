@@ -7,7 +7,6 @@
 
 @group(3) @binding(0) var<storage, read> finishes: array<FinishRecord>;
 
-const COOK_TORRANCE: u32 = 1u;
 const PHONG: u32 = 2u;
 const WATER: u32 = 3u;
 const DIELECTRIC: f32 = 0.04;

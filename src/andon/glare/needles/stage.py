@@ -17,7 +17,7 @@ from andon.glare.needles.records import (
 )
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
-from andon.gpu.passes import color_attachment, pipeline_layout, shader_module
+from andon.gpu.passes import PLUS, color_attachment, pipeline_layout, shader_module
 from andon.gpu.textures import Texture, uniform_buffer, write_buffer
 from andon.spaces import View
 
@@ -29,10 +29,6 @@ STRIP = "andon/glare/needles/strip_{}.wgsl"
 CAP = "andon/glare/quads/{}.wgsl"
 # Vertices of a needle or a part of it: a quad, and another one beyond the seam.
 VERTICES = {"pinhole": 6, "fisheye": 6, "latlong": 12}
-PLUS = {
-    part: {"operation": "add", "src_factor": "one", "dst_factor": "one"}
-    for part in ("color", "alpha")
-}
 
 
 class NeedleStage:

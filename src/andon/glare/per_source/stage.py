@@ -30,7 +30,7 @@ from andon.glare.per_source.rings import halo_samples, reach_chord, rings_of
 from andon.glare.per_source.tables import table_of
 from andon.gpu.bindings import BindGroup, bind_group
 from andon.gpu.device import Gpu
-from andon.gpu.passes import color_attachment, pipeline_layout, shader_module
+from andon.gpu.passes import PLUS, color_attachment, pipeline_layout, shader_module
 from andon.gpu.textures import Texture, make_texture, uniform_buffer, write_buffer
 from andon.observer.spread.model import SpreadFunction
 from andon.spaces import View
@@ -40,10 +40,6 @@ __all__ = ["PerSourceStage"]
 FORMAT = "rgba16float"
 FOLDER = "andon/glare/per_source"
 CAP = "andon/glare/quads/{}.wgsl"
-PLUS = {
-    part: {"operation": "add", "src_factor": "one", "dst_factor": "one"}
-    for part in ("color", "alpha")
-}
 # A ring that ends beyond this chord is the whole picture, and is drawn with others.
 WHOLE = 1.4
 RINGS = 4

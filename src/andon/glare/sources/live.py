@@ -2,7 +2,7 @@
 
 ::
 
-    picture ─survey▶ tiles ─background_luminance▶ ambient ─▶ 40 × ambient
+    picture ─survey▶ tiles ─ambient_level▶ ambient ─▶ 40 × ambient
                │                                                  │
                └─ tiles with a brighter pixel ─▶ pixels × gate ─▶ regions ─moments▶ [Source]
 
@@ -14,17 +14,16 @@ not merged: a source does not jump to its neighbour when they come near.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.glare.gate import gate
 from andon.glare.model import Source
-from andon.glare.sources.find import background_luminance
 from andon.glare.sources.moments import pixel_moments, sources_of
 from andon.glare.sources.regions import connected_regions
-from andon.glare.sources.survey import SIDE_PX, Survey, tile_solid_angles
+from andon.glare.sources.survey import SIDE_PX, Survey, ambient_level, tile_solid_angles
 from andon.quantities import photometric
 from andon.spaces import View
 
@@ -41,13 +40,15 @@ class LiveSources:
 
     Attributes
     ----------
-    ambient_cd_m2 : mean luminance without what is 40 times brighter.
+    ambient_cd_m2 : mean luminance, of what is 40 times brighter no more than that.
     sources : strongest first.
+    kept_share : (3,) what those have of the light of all that is bright; 1 unless there are more.
     within : (x, y, width, height) in pixels that holds all that is bright.
     """
 
     ambient_cd_m2: float
     sources: tuple[Source, ...] = ()
+    kept_share: Float = field(default_factory=lambda: np.ones(3))
     within: tuple[int, int, int, int] = (0, 0, 0, 0)
 
 
@@ -66,7 +67,7 @@ class SourceFinder:
 
     def find(self, survey: Survey, light_of: LightOf, /) -> LiveSources:
         """The sources of a frame; `survey` in cd/m², `light_of` is asked where it is bright."""
-        ambient = background_luminance(survey.mean, self._tiles, contrast=self.contrast)
+        ambient = ambient_level(survey.mean, self._tiles, self.contrast)
         bright = survey.peak > self.contrast * ambient
         if not bright.any():
             return LiveSources(ambient)
@@ -81,7 +82,11 @@ class SourceFinder:
             return LiveSources(ambient)
         left, top = int(columns.min()), int(rows.min())
         size = int(columns.max()) - left + 1, int(rows.max()) - top + 1
-        return LiveSources(ambient, tuple(self._sources(rows, columns, light)), (left, top, *size))
+        sources = tuple(self._sources(rows, columns, light))
+        bright = (light * self._solid[rows, columns, None]).sum(axis=0)
+        kept = np.sum([source.illuminance_lux for source in sources], axis=0)
+        share = np.clip(kept / np.maximum(bright, np.finfo(float).tiny), 0, 1)
+        return LiveSources(ambient, sources, share, (left, top, *size))
 
     def _sources(
         self, rows: NDArray[np.intp], columns: NDArray[np.intp], light: Float

@@ -12,7 +12,7 @@ from andon.glare.sources.survey import SIDE_PX, Survey
 from andon.gpu.bindings import bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.passes import FullscreenPass
-from andon.gpu.textures import Texture, make_texture
+from andon.gpu.textures import HALF_MOST, Texture, make_texture
 
 __all__ = ["SourceStage"]
 
@@ -43,4 +43,4 @@ class SourceStage:
 
     def _light_of(self, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> NDArray[np.float64]:
         units = self._light.read()[rows, columns, :3].astype(np.float64)
-        return np.clip(units, 0, np.finfo(np.float16).max) * self._per_unit
+        return np.clip(units, 0, HALF_MOST) * self._per_unit

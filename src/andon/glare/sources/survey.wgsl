@@ -1,5 +1,7 @@
 // Tiles of 8×8 pixels: mean and peak of the photometric luminance, as survey.py has them.
 
+//!import andon/gpu/photometric.wgsl
+
 @group(0) @binding(0) var light: texture_2d<f32>;
 
 const SIDE: i32 = 8;
@@ -11,7 +13,7 @@ const SIDE: i32 = 8;
   var peak = 0.0;
   for (var y = first.y; y < end.y; y++) {
     for (var x = first.x; x < end.x; x++) {
-      let value = dot(textureLoad(light, vec2i(x, y), 0).rgb, vec3f(0.2126, 0.7152, 0.0722));
+      let value = photometric(textureLoad(light, vec2i(x, y), 0).rgb);
       // NaN and negative light compare false and count as 0; infinity is what a half float holds.
       let usable = select(0.0, min(value, 65504.0), value > 0.0);
       sum += usable;

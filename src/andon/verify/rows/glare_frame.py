@@ -7,12 +7,14 @@ from numpy.typing import NDArray
 
 from andon.quantities import photometric
 from andon.verify.glare_frames import frame_of
+from andon.verify.glare_motion import STEP_PX, glare_steps
 from andon.verify.registry import Row
 
 __all__ = ["ROWS", "glare_difference", "shown_difference"]
 
 Float = NDArray[np.float64]
 BYTES = 5
+FRAMES = 60
 
 
 def _added(engine: str) -> Float:
@@ -33,6 +35,11 @@ def shown_difference() -> float:
     return float((np.abs(off).max(axis=-1) <= BYTES).mean() * 100)
 
 
+def motion() -> float:
+    """RMS in % of the change from frame to frame."""
+    return float(np.sqrt(np.mean(glare_steps(FRAMES) ** 2)) * 100)
+
+
 ROWS: tuple[Row, ...] = (
     Row(
         "glare.frame.added",
@@ -49,5 +56,14 @@ ROWS: tuple[Row, ...] = (
         "% of pixels within 5/255",
         "the reference engine, the same picture; edges of shadows are in it",
         shown_difference,
+    ),
+    Row(
+        "glare.frame.motion",
+        "glare",
+        1.0,
+        "% RMS from frame to frame",
+        f"no change: {FRAMES} frames, the camera turning by {STEP_PX} px in each, at fixed places "
+        "of the world; halo and needles are in it",
+        motion,
     ),
 )

@@ -1,4 +1,4 @@
-"""The reference of the whole picture: profile, roundness, energy, motion, symmetry, input."""
+"""Physics of the whole picture: profile, roundness, energy, motion, symmetry, input."""
 
 import numpy as np
 import pytest

@@ -152,6 +152,11 @@ def test_a_picture_without_sources_is_told(capfd, folder):
     assert "the eye is mesopic, its pupil 5 mm" in whole
 
 
+def test_a_panorama_of_another_shape_is_told(capfd, folder):
+    assert "64×48 is no 2:1" in glared(capfd, "night.exr", "--projection", "latlong").err
+    assert "2:1" not in glared(capfd, "night.exr").err
+
+
 def test_veil_maps(capfd, folder):
     words = ["night.exr", "--hfov-degrees", "40", "--gaze", "40,25", "--report", "r.json"]
     glared(capfd, *words, "--veil-map", "veil.exr", out="a.png")

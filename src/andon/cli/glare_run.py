@@ -31,18 +31,26 @@ def run(options: GlareOptions) -> None:
     check = _checked(results[0]) if options.evalglare else None
     for warning in (*seen.warnings, *results[0].warnings):
         note(warning)
-    if seen.photometry == "relative":
-        eye = results[0].eye
-        note(f"without cd/m² the eye is {eye.adaptation}, its pupil {eye.pupil_mm:g} mm")
-    if options.renderer == "per-source" and not results[0].found.sources:
-        note(
-            "no source is 40 times brighter than the picture, so that nothing is scattered; "
-            "--renderer whole-picture scatters all light"
-        )
+    _note_assumed(options, seen, results[0])
     _write(options, seen, results, check)
     for line in _told(results[-1]):
         note(line)
     print(options.out)
+
+
+def _note_assumed(options: GlareOptions, seen: Calibrated, result: GlareResult) -> None:
+    """What was taken for granted, and what was asked for in vain."""
+    width, height = seen.view.width, seen.view.height
+    if seen.view.projection == "latlong" and abs(width - 2 * height) > 0.02 * width:
+        note(f"{width}×{height} is no 2:1: taken as the whole sphere, its pixels are not square")
+    if seen.photometry == "relative":
+        eye = result.eye
+        note(f"without cd/m² the eye is {eye.adaptation}, its pupil {eye.pupil_mm:g} mm")
+    if options.renderer == "per-source" and not result.found.sources:
+        note(
+            "no source is 40 times brighter than the picture, so that nothing is scattered; "
+            "--renderer whole-picture scatters all light"
+        )
 
 
 def _check(options: GlareOptions) -> tuple[float, ...]:

@@ -61,10 +61,10 @@ def scatter_all(light: Float, view: View, kernel: Kernel, engine: EngineName, /)
     plan = plan_whole(view, kernel)
     leaves = resolved(plan)
     share: Float = np.maximum(leaves, kernel.share)
-    if engine == "gpu" or (engine == "auto" and _has_gpu()):
-        return _summed(light, _glare_on_gpu(light, plan), share, view, kernel, "gpu")
-    glare = veil(light, plan) + (share - leaves)[..., None] * light
-    return _summed(light, glare, share, view, kernel, "reference")
+    by_gpu = engine == "gpu" or (engine == "auto" and _has_gpu())
+    glare = _glare_on_gpu(light, plan) if by_gpu else veil(light, plan)
+    glare = glare + (share - leaves)[..., None] * light
+    return _summed(light, glare, share, view, kernel, "gpu" if by_gpu else "reference")
 
 
 def scatter_sources(light: Float, view: View, kernel: Kernel, found: FoundSources, /) -> Scatter:
@@ -92,7 +92,7 @@ def _has_gpu() -> bool:
 
 
 def _glare_on_gpu(light: Float, plan: WholePlan) -> Float:
-    """(H, W, 3) what is added."""
+    """(H, W, 3) what is scattered to other pixels."""
     from andon.glare.whole_picture.stage import WholePictureStage
     from andon.gpu.device import open_gpu
     from andon.gpu.textures import make_texture

@@ -13,14 +13,24 @@ level, counted from `corner`; in arrays it lies at i + `MARGIN`.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.spaces import View
 
-__all__ = ["MARGIN", "Chart", "block_directions", "block_shape", "charts_of", "pixel_angles"]
+__all__ = [
+    "BLOCK_PIXELS",
+    "MARGIN",
+    "Chart",
+    "block_directions",
+    "block_shape",
+    "block_solid_angles",
+    "block_view",
+    "charts_of",
+    "pixel_angles",
+]
 
 Float = NDArray[np.float64]
 
@@ -35,6 +45,8 @@ PAIR_REACH_DEGREES = 125.0
 BLEND_DEGREES = 6.0
 # No scale is smaller: that of directions within 0.1° of straight behind.
 LEAST_SCALE = 1e-6
+# Pixels of the picture that a block is wide.
+BLOCK_PIXELS = 2
 # Pixels per cell of level 1, and by how much a wide field may be finer or coarser on the axis.
 CELL_PIXELS = 2.0
 FINEST, COARSEST = 0.6, 1.3
@@ -121,6 +133,31 @@ def block_directions(view: View, /) -> Float:
     rows, columns = block_shape(view)
     y, x = np.mgrid[:rows, :columns].astype(np.float64) * 2 - 1.5
     return view.directions_at(np.stack([x, y], -1))
+
+
+def block_view(view: View, /) -> View:
+    """The pinhole or fisheye view whose pixels are the blocks of `view`, its border included."""
+    rows, columns = block_shape(view)
+    # Pixels a block; the array of a half has its index i at pixel 2i − 1.5 of the finer.
+    across = BLOCK_PIXELS
+    middle = (view.cx / across, view.cy / across)
+    off = 1.5 * (across - 1) / across
+    sizes = {"width": columns, "height": rows, "fx": view.fx / across, "fy": view.fy / across}
+    return replace(view, cx=middle[0] + off, cy=middle[1] + off, distortion=(), **sizes)
+
+
+def block_solid_angles(view: View, /) -> Float:
+    """(rows, columns) of the pixels that read a block, by how much of it they read."""
+    if view.projection != "latlong":
+        return block_view(view).solid_angles()
+    # Beyond a pole nothing reads it.
+    rows = np.zeros(block_shape(view)[0])
+    pixel = np.arange(view.height)
+    own = pixel // 2 + 1
+    solid = 2 * view.solid_angles()[:, 0]
+    np.add.at(rows, own, 0.75 * solid)
+    np.add.at(rows, own + np.where(pixel % 2 == 0, -1, 1), 0.25 * solid)
+    return np.repeat(rows[:, None], block_shape(view)[1], 1)
 
 
 def charts_of(view: View, /) -> tuple[Chart, ...]:

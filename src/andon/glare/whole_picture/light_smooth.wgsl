@@ -11,17 +11,21 @@ fn sampled(at: vec2f) -> vec3f {
 }
 
 // Between the first two pixels of four the sampler weighs them 1 to 3, between the last 3 to 1.
-fn halved(texel: vec2f) -> vec3f {
+// Each sample counts by the solid angle in its middle.
+fn halved(texel: vec2f, growth: vec2f) -> vec3f {
   let low = 2.0 * texel - 2.75;
   let high = low + vec2f(1.5);
-  return sampled(low) + sampled(vec2f(high.x, low.y)) + sampled(vec2f(low.x, high.y))
-    + sampled(high);
+  let across = 0.75 * (growth.x + growth.y);
+  let along = 0.75 * (growth.x - growth.y);
+  return (1.0 - across) * sampled(low) + (1.0 + along) * sampled(vec2f(high.x, low.y))
+    + (1.0 - along) * sampled(vec2f(low.x, high.y)) + (1.0 + across) * sampled(high);
 }
 
 @fragment fn halve(@builtin(position) texel: vec4f) -> @location(0) vec4f {
-  return vec4f(halved(texel.xy), 0.0);
+  return vec4f(halved(texel.xy, vec2f(0.0)), 0.0);
 }
 
 @fragment fn reduce_blocks(@builtin(position) texel: vec4f) -> @location(0) vec4f {
-  return vec4f(halved(texel.xy) * textureLoad(factors, vec2i(texel.xy), 0).x, 0.0);
+  let factor = textureLoad(factors, vec2i(texel.xy), 0);
+  return vec4f(halved(texel.xy, factor.zw) * factor.x, factor.y);
 }

@@ -12,6 +12,9 @@ const WIDE_RADIUS: i32 = 2;
 const WIDE_TAPS = array<f32, 3>(0.5f, 0.2f, 0.05f);
 const HAS_ABOVE: bool = true;
 const HAS_FAR: bool = true;
+// Whether blocks have a rung of their own, and whether the first and the last are the same places.
+const HAS_BLOCKS: bool = true;
+const WRAPS: bool = false;
 fn weight_of_row(row: i32) -> f32 {
   return 1.0;
 }

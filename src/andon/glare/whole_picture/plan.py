@@ -33,10 +33,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.glare.kernel import Kernel
-from andon.glare.whole_picture.charts import Chart, charts_of
+from andon.glare.whole_picture.charts import (
+    Chart,
+    block_directions,
+    block_solid_angles,
+    charts_of,
+)
 from andon.glare.whole_picture.far import Far, far_level, plan_far
 from andon.glare.whole_picture.ladder import Ladder, Rung
 from andon.glare.whole_picture.mixture import Mixture
+from andon.glare.whole_picture.neighbours import Neighbours, neighbours_of
 from andon.spaces import View
 
 __all__ = ["WholePlan", "plan_whole"]
@@ -45,6 +51,8 @@ Float = NDArray[np.float64]
 
 # χ begins to fall at a σ of so many coarse cells, and ends at so many.
 FAR_CELLS = (0.8, 3.2)
+# Where it is asked whether a rung spreads anything.
+SCALES = 65
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +65,7 @@ class WholePlan:
     charts : one, or two that share the sphere.
     ladder : the filters of the levels and their shares of light.
     far : the rest, between all pairs of coarse cells.
+    neighbours : what pixels exchange with the eight around them, where that is coarse.
     """
 
     view: View
@@ -64,6 +73,7 @@ class WholePlan:
     charts: tuple[Chart, ...]
     ladder: Ladder
     far: Far
+    neighbours: Neighbours | None
 
     @property
     def pair(self) -> bool:
@@ -71,18 +81,42 @@ class WholePlan:
         return len(self.charts) == 2
 
     @property
+    def wraps(self) -> bool:
+        """Whether the first blocks and the last are the same places, as in even panoramas."""
+        return self.view.projection == "latlong" and self.view.width % 2 == 0
+
+    @property
     def levels(self) -> int:
         """T, the last level that is needed: at least the far part's."""
         return max(self.ladder.levels, self.far.level)
+
+    def rungs_of(self, level: int, /) -> list[Rung]:
+        """Those of a level that spread any light: of fine pixels the finest do not."""
+        coarse = (chart.scale(chart.cell_directions(self.levels)) for chart in self.charts)
+        scales = np.linspace(min(float(scale.min()) for scale in coarse), 1, SCALES)
+        own = (rung for rung in self.ladder.rungs if rung.level == level)
+        return [rung for rung in own if self.ladder.share_of(rung, scales).any()]
 
     def root(self, rung: Rung, scale: Float, /) -> Float:
         """(...) √w of a rung where the chart's scale is a, units per radian."""
         return np.sqrt(self.ladder.share_of(rung, scale)) / scale
 
+    def of_blocks(self) -> Float:
+        """(rows, columns) veil of a block by its own rung, per cd·sr/m² of its light."""
+        directions = block_directions(self.view)
+        shares = (
+            chart.share(directions, pair=self.pair)
+            * self.ladder.share_of_blocks(chart.scale(directions))
+            for chart in self.charts
+        )
+        solid = block_solid_angles(self.view)
+        return np.divide(sum(shares), solid, where=solid > 0, out=np.zeros_like(solid))
+
     def resolved(self, scale: Float, /) -> Float:
-        """(...) share of light that leaves its place, where the chart's scale is a."""
+        """(...) share of light that leaves its place at scale a, but for that to neighbours."""
         near = (self.ladder.share_of(rung, scale) for rung in self.ladder.rungs)
-        return sum(near, np.interp(scale, self.far.scales, self.far.shares))
+        far = np.interp(scale, self.far.scales, self.far.shares)
+        return sum(near, far + self.ladder.share_of_blocks(scale))
 
 
 def plan_whole(view: View, kernel: Kernel, /) -> WholePlan:
@@ -92,5 +126,6 @@ def plan_whole(view: View, kernel: Kernel, /) -> WholePlan:
     level = far_level(charts)
     cell = charts[0].cell
     start, end = (cell * 2 ** (level - 1) * cells for cells in FAR_CELLS)
-    ladder = Ladder.of(view, mixture, cell, (start, end))
-    return WholePlan(view, kernel, charts, ladder, plan_far(charts, level, kernel, mixture, ladder))
+    ladder = Ladder.of(view, kernel, mixture, cell, (start, end))
+    far = plan_far(charts, level, kernel, mixture, ladder)
+    return WholePlan(view, kernel, charts, ladder, far, neighbours_of(view, charts, ladder))

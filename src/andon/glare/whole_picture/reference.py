@@ -60,20 +60,24 @@ def veil(luminance: NDArray[Any], plan: WholePlan, /) -> Float:
     directions = block_directions(plan.view)
     lights = [_pyramid(into_chart(blocks, directions, c), plan.levels) for c in plan.charts]
     far = _far([levels[plan.far.level - 1] for levels in lights], plan)
-    veils = np.zeros_like(blocks)
+    veils = plan.of_blocks()[..., None] * (wrapped(blocks) if plan.wraps else blocks)
     for chart, levels, coarse in zip(plan.charts, lights, far, strict=True):
         seen = _accumulated(chart, levels, coarse, plan)
         share = chart.share(directions, pair=plan.pair)[..., None]
         veils += share * _read(seen, chart.array_place(chart.place_from_direction(directions), 1))
-    return expand_blocks(veils, plan.view.shape)
+    glare = expand_blocks(veils, plan.view.shape)
+    return glare if plan.neighbours is None else glare + plan.neighbours.veil(light)
 
 
 def resolved(plan: WholePlan, /) -> Float:
     """(H, W) share of each pixel's light that leaves it."""
-    directions = plan.view.directions()
+    # As the veil is made: of blocks, and read from them.
+    directions = block_directions(plan.view)
     shares = np.stack([c.share(directions, pair=plan.pair) for c in plan.charts])
     each = np.stack([plan.resolved(c.scale(directions)) for c in plan.charts])
-    return np.sum(shares * each, 0)
+    whole = np.sum(shares * each, 0)[..., None]
+    beside = 0.0 if plan.neighbours is None else plan.neighbours.share()
+    return expand_blocks(whole, plan.view.shape)[..., 0] + beside
 
 
 def reduce_blocks(light: Float, /) -> Float:
@@ -98,6 +102,13 @@ def expand_blocks(blocks: Float, shape: tuple[int, int], /) -> Float:
         out[1::2] = 0.75 * blocks[1:-1] + 0.25 * blocks[2:]
         blocks = np.moveaxis(out, 0, axis)
     return blocks[: shape[0], : shape[1]]
+
+
+def wrapped(blocks: Float, /) -> Float:
+    """Blocks of a panorama (rows, columns, 3) with what is the same place at the other side."""
+    out = blocks.copy()
+    out[:, [0, 1, -2, -1]] += blocks[:, [-2, -1, 0, 1]]
+    return out
 
 
 def into_chart(blocks: Float, directions: Float, chart: Chart, /) -> Float:

@@ -16,6 +16,7 @@ __all__ = [
     "SPLINES_VARIANCE",
     "filters",
     "level_profile",
+    "quintic",
     "sigma_cells",
     "spline_weights",
 ]
@@ -44,10 +45,12 @@ def _half(variance: float, radius: int) -> tuple[float, ...]:
     return tuple(float(v) for v in values / (values[0] + 2 * values[1:].sum()))
 
 
-# P along each axis, the middle tap and those to one side. From level 3 on there are two, the wider
-# √2 of the other all in all: a ratio of 2 makes a ripple of 1.2 % (θ⁻²·⁷), one of √2 of 0.1 %, and
-# these levels are cheap. The less wide P is, the more a point's veil depends on where in a cell it
-# lies: with these by 1 %.
+# P along each axis, the middle tap and those to one side. The first level has one that does
+# nothing, for what lies within two pixels. From level 3 on there are two, the wider √2 of the other
+# all in all: a ratio of 2 makes a ripple of 1.2 % (θ⁻²·⁷), one of √2 of 0.1 %, and these levels are
+# cheap. The less wide P is, the more a point's veil depends on where in a cell it lies: with these
+# by 1 %.
+NONE = (1.0,)
 FIRST = _half(0.8, 2)
 SECOND = _half(1.0, 3)
 NARROW = _half(0.8, 3)
@@ -56,7 +59,7 @@ WIDE = _half(2.0, 4)
 
 def filters(level: int, /) -> tuple[tuple[float, ...], ...]:
     """One P or two of a level ≥ 1, each as the middle tap and those to one side; each sums to 1."""
-    return ((FIRST,), (SECOND,))[level - 1] if level < 3 else (NARROW, WIDE)
+    return ((NONE, FIRST), (SECOND,))[level - 1] if level < 3 else (NARROW, WIDE)
 
 
 def sigma_cells(level: int, which: int, /) -> float:
@@ -74,11 +77,11 @@ def level_profile(radii: Float, /) -> Float:
 
 
 def _along(x: Float) -> Float:
-    sums = [NARROW[abs(n)] * _quintic(x - n) for n in range(-len(NARROW) + 1, len(NARROW))]
+    sums = [NARROW[abs(n)] * quintic(x - n) for n in range(-len(NARROW) + 1, len(NARROW))]
     return np.sum(sums, 0)
 
 
-def _quintic(x: Float) -> Float:
+def quintic(x: Float, /) -> Float:
     """B ∗ B: the B-spline of degree 5, of six boxes."""
     binomial = (1, -6, 15, -20, 15, -6, 1)
     powers = [b * np.maximum(x + 3 - k, 0) ** 5 for k, b in enumerate(binomial)]

@@ -12,6 +12,7 @@ from andon.errors import InputError
 from andon.glare.whole_picture import tables
 from andon.glare.whole_picture.charts import MARGIN, Chart, block_shape
 from andon.glare.whole_picture.ladder import Rung
+from andon.glare.whole_picture.neighbours_pass import NeighboursPass
 from andon.glare.whole_picture.plan import WholePlan
 from andon.glare.whole_picture.splines import filters
 from andon.gpu.bindings import bind_group
@@ -24,6 +25,8 @@ __all__ = ["WholePictureStage"]
 # Light and veil between passes: half floats are cut, not rounded, by some drivers. The last step
 # alone has half floats, since only these can be interpolated by all adapters.
 BETWEEN, SMOOTH = "rgba32float", "rgba16float"
+# Solid angles that grow by more than this of themselves to the next pixel are not for a sampler.
+EVEN = 0.003
 # Texels of a half whose four pixels are not all of the picture.
 BORDER = 2
 FOLDER = "andon/glare/whole_picture"
@@ -112,6 +115,9 @@ class WholePictureStage:
         self._lights = [_levels(gpu, chart, plan.levels) for chart in plan.charts]
         self._steps = [*self._light(), *self._far(), *self._spread(), *self._seen()]
         self._copy, self._out, self._alone = self._last()
+        self._neighbours: NeighboursPass | None = None
+        if plan.neighbours is not None:
+            self._neighbours = NeighboursPass(gpu, source, SMOOTH, plan.neighbours)
 
     def _pass(
         self,
@@ -144,26 +150,31 @@ class WholePictureStage:
             picture = half
         for chart, levels in zip(self.plan.charts, self._lights, strict=True):
             blocks = make_texture(self.gpu, BETWEEN, *self._shapes[-1][::-1])
-            factors = self._filled(tables.block_factors(self.plan, chart), "r32float")
-            steps.append(self._halved("reduce_blocks", picture, blocks, factors))
+            factors = tables.block_factors(self.plan, chart)
+            even = float(np.abs(factors[..., 2:]).max()) < EVEN
+            views = self._filled(factors)
+            steps.append(self._halved("reduce_blocks", picture, blocks, views, even=even))
             roots = [
                 self._filled(_first_root(self.plan, chart, level), "r32float")
                 for level in range(1, self.plan.levels + 1)
             ]
+            self._blocks = blocks.view
             steps.append(self._gathered(chart, blocks, levels[0], roots[0]))
             for finer, coarser, root in zip(levels, levels[1:], roots[1:], strict=False):
                 inputs: Bindings = {0: ("float", finer.view), 1: ("float", root)}
                 steps.append(self._pass("light", "reduced", coarser, inputs, taps=17))
         return steps
 
-    def _halved(self, entry: str, picture: Texture, half: Texture, factors: Any) -> _Step:
+    def _halved(
+        self, entry: str, picture: Texture, half: Texture, factors: Any, *, even: bool = True
+    ) -> _Step:
         """A halving; that of the picture itself is sampled where it may be."""
         inputs: Bindings = {0: ("float", picture.view), 1: ("float", factors)}
         numbers = _numbers(self.plan, picture=picture is self._source)
         step = self._pass("light", entry, half, inputs, numbers, 17)
         large = min(half.width, half.height) > 2 * BORDER
-        flat = self.plan.view.projection != "latlong"
-        if not (self._trusted and picture is self._source and flat and large):
+        even &= self.plan.view.projection != "latlong"
+        if not (self._trusted and picture is self._source and even and large):
             return step
         inputs[0] = ("smooth", picture.view)
         inputs[2] = ("linear sampler", self._sampler)
@@ -216,7 +227,7 @@ class WholePictureStage:
         self, chart: Chart, level: int, cells: Texture, above: Any | None, far: Bindings
     ) -> list[_Step]:
         """Its rungs along x, and along y with all that is on top."""
-        rungs = _rungs(self.plan, level)
+        rungs = self.plan.rungs_of(level)
         numbers = _numbers(self.plan, level)
         steps: list[_Step] = []
         swept: list[Any] = []
@@ -247,6 +258,8 @@ class WholePictureStage:
             inputs[2 * index] = ("float", levels[0].view)
             places = self._filled(tables.block_places(self.plan, chart))
             inputs[2 * index + 1] = ("float", places)
+        # The same for both charts.
+        inputs[7] = ("float", self._blocks)
         entry = "blocks_seen_by_two" if self.plan.pair else "blocks_seen"
         taps = 10 * len(self.plan.charts)
         steps = [self._pass("seen", entry, self._veils[-1], inputs, taps=taps)]
@@ -286,11 +299,15 @@ class WholePictureStage:
         render.set_bind_group(0, self._out.groups[0].group)
         render.draw(3)
         render.end()
+        if self._neighbours is not None:
+            self._neighbours.encode(encoder, self._target, alone=False)
 
     def encode_glare(self, encoder: Any, texture: Texture) -> None:
         """Records the veil alone into `texture` (rgba16float, of the view's size), alpha 0."""
         self._encode_veil(encoder)
         self._alone.encode(encoder, [texture.view])
+        if self._neighbours is not None:
+            self._neighbours.encode(encoder, texture, alone=True)
 
     def cost(self) -> tuple[int, int]:
         """Texels read and bytes read and written for a picture."""
@@ -300,6 +317,8 @@ class WholePictureStage:
         written = sum(count for count, _ in texels)
         # The picture: read, written, read and written again; a sample of the veil is four texels.
         pixels = width * height
+        if self._neighbours is not None:
+            taps += self._neighbours.TAPS * pixels
         return taps + 6 * pixels, 16 * (taps + written) + 8 * 8 * pixels
 
     def _encode_veil(self, encoder: Any) -> None:
@@ -321,10 +340,6 @@ def _levels(gpu: Gpu, chart: Chart, count: int) -> list[Texture]:
     return [make_texture(gpu, BETWEEN, columns, rows) for rows, columns in shapes]
 
 
-def _rungs(plan: WholePlan, level: int) -> list[Rung]:
-    return [rung for rung in plan.ladder.rungs if rung.level == level]
-
-
 def _root(plan: WholePlan, chart: Chart, rung: Rung) -> NDArray[np.float64]:
     """√w of the cells of a rung's level."""
     return plan.root(rung, chart.scale(chart.cell_directions(rung.level)))
@@ -336,7 +351,7 @@ def _reads(level: int, rung: Rung) -> int:
 
 def _first_root(plan: WholePlan, chart: Chart, level: int) -> NDArray[np.float64]:
     """√w of a level's first rung, 0 where it has none."""
-    rungs = _rungs(plan, level)
+    rungs = plan.rungs_of(level)
     return _root(plan, chart, rungs[0]) if rungs else np.zeros(chart.array_shape(level))
 
 
@@ -352,12 +367,14 @@ def _numbers(
     if picture and plan.view.projection == "latlong":
         row = f"sin((f32(row) + 0.5) * {np.pi / plan.view.height:.9g}f)"
     columns, rows = window or (1, 1)
-    rungs = _rungs(plan, level)
+    rungs = plan.rungs_of(level)
     taps = [filters(level)[rung.which] for rung in rungs] + [(1.0, 0.0)] * (2 - len(rungs))
     lines = [
         f"const MARGIN: i32 = {MARGIN};",
         f"const WINDOW = vec2i({columns}, {rows});",
         f"const RUNGS: i32 = {len(rungs)};",
+        f"const HAS_BLOCKS: bool = {str(bool(plan.of_blocks().max() > 0)).lower()};",
+        f"const WRAPS: bool = {str(plan.wraps).lower()};",
         f"const HAS_ABOVE: bool = {str(level < plan.levels).lower()};",
         f"const HAS_FAR: bool = {str(level == plan.far.level).lower()};",
         f"fn weight_of_row(row: i32) -> f32 {{ return {row}; }}",

@@ -6,22 +6,34 @@ projection; read as float32, whose 24 bits are a thousandth of a cell in the lar
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.glare.whole_picture.charts import Chart, block_directions, block_shape
+from andon.glare.whole_picture.charts import (
+    BLOCK_PIXELS,
+    Chart,
+    block_directions,
+    block_shape,
+    block_view,
+)
 from andon.glare.whole_picture.far import Far
+from andon.glare.whole_picture.neighbours import Neighbours
 from andon.glare.whole_picture.plan import WholePlan
-from andon.spaces import View
 
-__all__ = ["STRIP", "Windows", "block_factors", "block_places", "far_tables", "windows"]
+__all__ = [
+    "STRIP",
+    "Windows",
+    "block_factors",
+    "block_places",
+    "far_tables",
+    "neighbour_tables",
+    "windows",
+]
 
 Float = NDArray[np.float64]
 
-# Pixels of the picture that a block is wide.
-BLOCK_PIXELS = 2
 # Cells of the spline to each side, and how far off, in cells, a flat window may be.
 SUPPORT, FLAT = 1.5, 0.02
 # Windows of more blocks than this are looked through one by one, each for as many as it needs.
@@ -47,28 +59,31 @@ class Windows:
     steps: Float
 
 
-def block_view(view: View) -> View:
-    """The pinhole or fisheye view whose pixels are the blocks of `view`, its border included."""
-    rows, columns = block_shape(view)
-    # Pixels a block; the array of a half has its index i at pixel 2i − 1.5 of the finer.
-    across = BLOCK_PIXELS
-    middle = (view.cx / across, view.cy / across)
-    off = 1.5 * (across - 1) / across
-    sizes = {"width": columns, "height": rows, "fx": view.fx / across, "fy": view.fy / across}
-    return replace(view, cx=middle[0] + off, cy=middle[1] + off, distortion=(), **sizes)
-
-
 def block_factors(plan: WholePlan, chart: Chart, /) -> Float:
-    """(rows, columns) solid angle of a pixel by the area of a cell of level 1.
+    """(rows, columns, 4) solid angle of a pixel by the area of a cell of level 1, the blocks' own
+    rung by that area, and by how much the former grows, relatively, with a column and a row.
 
-    Of latlong it is that at the horizon: the shader has the cosine of the row.
+    Of latlong the former is that at the horizon: the shader has the cosine of the row.
     """
     view = plan.view
+    own = plan.of_blocks() * chart.cell**2
     if view.projection == "latlong":
         # Rows are zones: the sine of half their height takes the place of the half.
         horizon = 2 * np.sin(np.pi / view.height / 2) * 2 * np.pi / view.width
-        return np.full(block_shape(view), horizon) / chart.cell**2
-    return block_view(view).solid_angles() / BLOCK_PIXELS**2 / chart.cell**2
+        solid = np.full(block_shape(view), horizon)
+    else:
+        solid = block_view(view).solid_angles() / BLOCK_PIXELS**2
+    along, across = np.gradient(np.log(solid)) if min(solid.shape) > 1 else (0 * solid, 0 * solid)
+    growth = (across / BLOCK_PIXELS, along / BLOCK_PIXELS)
+    return np.stack([solid / chart.cell**2, own, *growth], -1)
+
+
+def neighbour_tables(neighbours: Neighbours, /) -> tuple[Float, Float]:
+    """(H, W, 4) what is exchanged, in units of a solid angle, and (H, W, 2) that unit by the solid
+    angle of a pixel and the share of its light that leaves it."""
+    unit = float(neighbours.solid_angles.mean())
+    factors = np.stack([unit / neighbours.solid_angles, neighbours.share()], -1)
+    return neighbours.exchanged / unit, factors
 
 
 def block_places(plan: WholePlan, chart: Chart, /) -> Float:

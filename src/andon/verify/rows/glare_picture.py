@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache, partial
 
 import cv2
@@ -15,6 +16,7 @@ from andon.spaces import View, pinhole_view
 from andon.verify.glare_points import POINTS, Rings, kernel_of, plan_of, point_veil, rings
 from andon.verify.panoramas import panorama
 from andon.verify.registry import Row
+from andon.verify.rows.glare_whole import cut_out
 
 __all__ = ["ROWS", "energy_error", "motion_change", "profile_error", "real_error"]
 
@@ -23,18 +25,19 @@ Float = NDArray[np.float64]
 MODEL = "cie135"
 MODELS = (MODEL, "cie146-general", "cie146-small-angle", "ijspeert", "paper")
 SPHERE = View("latlong", 192, 96)
+NIGHT = "hdri_night_open3d/nightlights_latlong512.hdr"
+# Files, and the angle of a pinhole that sees a part of them.
 REAL = {
-    "interior": "hdri_blender_cc0/interior.exr",
-    "sunrise": "hdri_blender_cc0/sunrise.exr",
-    "city": "hdri_blender_cc0/city.exr",
-    "night": "hdri_night_open3d/nightlights_latlong512.hdr",
-    "beach": "hdri_spiaggia/spiaggia_di_mondello_1k.hdr",
+    "interior": ("hdri_blender_cc0/interior.exr", None),
+    "sunrise": ("hdri_blender_cc0/sunrise.exr", None),
+    "city": ("hdri_blender_cc0/city.exr", None),
+    "night": (NIGHT, None),
+    "beach": ("hdri_spiaggia/spiaggia_di_mondello_1k.hdr", None),
+    "interior_60_degrees": ("hdri_blender_cc0/interior.exr", 60.0),
+    "night_60_degrees": (NIGHT, 60.0),
 }
 # So small, the exact convolution takes seconds.
-REAL_SIZE = (128, 64)
-# What is brighter than the mean by this much is a source, as for the halo; so near to one, in
-# pixels, nothing is claimed of a point's veil, so neither is it here.
-SOURCE_RATIO, NEAR_PIXELS = 40.0, 6
+REAL_SIZE, CUT_SIZE = (128, 64), (80, 45)
 FRAMES, STEP_PIXELS, CLEAR_PIXELS = 60, 0.13, 10
 LIGHTS_DEGREES = ((-9.0, 4.0, 1.0), (6.0, -3.0, 3.0), (14.0, 8.0, 0.3))
 
@@ -68,30 +71,34 @@ def energy_error() -> float:
 
 
 @cache
-def _real_errors(name: str) -> tuple[Float, NDArray[np.bool_]]:
-    picture = cv2.resize(panorama(name).astype(np.float64), REAL_SIZE, interpolation=cv2.INTER_AREA)
-    light = np.maximum(picture, 0)
-    view, kernel = View("latlong", *REAL_SIZE), kernel_of(MODEL)
+def _real(name: str) -> tuple[Float, Float, Float]:
+    """Veil and the exact one, (H, W, 3), and solid angles (H, W, 1)."""
+    view, light = _picture(name)
+    kernel = kernel_of(MODEL)
     seen = scattered(light, plan_whole(view, kernel))
-    # The exact one has what a pixel scatters within itself, too.
-    within = np.maximum(kernel.share - seen.share, 0)[..., None] * light
-    exact = convolved(light, view, kernel)
-    return (seen.glare + within) / exact - 1, _near_sources(light)
+    # What is seen less what stays: the exact one has what a pixel scatters within itself, too.
+    glare = seen.picture - (1 - kernel.share) * light
+    return glare, convolved(light, view, kernel), view.solid_angles()[..., None]
 
 
-def _near_sources(light: Float) -> NDArray[np.bool_]:
-    bright = (light.max(-1) > SOURCE_RATIO * light.mean()).astype(np.uint8)
-    size = 2 * NEAR_PIXELS + 1
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
-    thrice = np.concatenate([bright] * 3, 1)
-    width = bright.shape[1]
-    return cv2.dilate(thrice, disc)[:, width : 2 * width] > 0
+def _picture(name: str) -> tuple[View, Float]:
+    """A panorama made small, or the part of it that a pinhole sees."""
+    file, degrees = REAL[name]
+    whole = np.maximum(panorama(file).astype(np.float64), 0)
+    if degrees is None:
+        light = cv2.resize(whole, REAL_SIZE, interpolation=cv2.INTER_AREA)
+        return View("latlong", *REAL_SIZE), np.asarray(light, np.float64)
+    width, height = CUT_SIZE
+    view = pinhole_view(width, height, width / 2 / math.tan(math.radians(degrees / 2)))
+    return view, cut_out(whole, view)
 
 
-def real_error(name: str, *, everywhere: bool = False) -> float:
-    """Relative RMS of the glare of a real picture, away from its sources or everywhere."""
-    error, near = _real_errors(name)
-    return float(np.sqrt(np.mean((error if everywhere else error[~near]) ** 2)))
+def real_error(name: str, *, each: bool = False) -> float:
+    """Relative RMS of the veil of a real picture by its light, or of `each` pixel by its own."""
+    veil, exact, solid = _real(name)
+    if each:
+        return float(np.sqrt(np.mean((veil / exact - 1) ** 2)))
+    return float(np.sqrt(np.sum(solid * (veil - exact) ** 2) / np.sum(solid * exact**2)))
 
 
 def motion_change() -> float:
@@ -178,21 +185,21 @@ ROWS: tuple[Row, ...] = (
             "glare",
             0.02,
             "of the veil (RMS)",
-            f"exact convolution of {REAL_SIZE[0]}×{REAL_SIZE[1]} on the sphere, 6 px off sources",
-            partial(real_error, file),
+            "exact convolution on the sphere, all pixels: of the veil's own RMS",
+            partial(real_error, name),
         )
-        for name, file in REAL.items()
+        for name in REAL
     ),
     *(
         Row(
-            f"glare.whole_everywhere.{name}",
+            f"glare.whole_each.{name}",
             "glare",
             None,
             "of the veil (RMS)",
-            f"exact convolution on the sphere, {REAL_SIZE[0]}×{REAL_SIZE[1]}; all pixels",
-            partial(real_error, file, everywhere=True),
+            "exact convolution on the sphere, all pixels: each by its own veil",
+            partial(real_error, name, each=True),
         )
-        for name, file in REAL.items()
+        for name in REAL
     ),
     Row(
         "glare.motion",

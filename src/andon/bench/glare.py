@@ -6,8 +6,8 @@ reference, and the peer is timed for what it would take, right or wrong.
 
 Not a row: Blender's Glare node. Its module (bpy 5.0.1, 0.4 GB, for Python 3.11 and NumPy 1) can be
 installed, but is no dependency of a test; rendering its compositor by hand with 2 threads at
-1280×720 took 0.65 s of both cores for "Fog Glow" at full size and 0.12 s for "Bloom", which are sums
-of filters in pixels and no spread functions.
+1280×720 took 0.65 s of both cores for "Fog Glow" at full size and 0.12 s for "Bloom", which are
+sums of filters in pixels and no spread functions.
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ ring would lie between a point and its veil. Coarser pixels hold it in themselve
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -56,8 +57,8 @@ class Kernel:
     @cached_property
     def share(self) -> float:
         """k, of θ ≥ θ_min."""
-        ends = np.radians([self.minimum_degrees, FADE_DEGREES[1]])
-        theta = np.exp(np.linspace(*np.log(ends), STEPS + 1))
+        first, last = (math.log(math.radians(d)) for d in (self.minimum_degrees, FADE_DEGREES[1]))
+        theta = np.exp(np.linspace(first, last, STEPS + 1))
         # Multiplying by θ makes it an integral over log θ.
         ring = self.per_sr(theta, core=True) * 2 * np.pi * np.sin(theta) * theta
         return float(np.sum((ring[1:] + ring[:-1]) / 2 * np.diff(np.log(theta))))

@@ -204,7 +204,9 @@ def _chart_of(view: View, directions: Float, pixel: float) -> Chart:
     plane = 2 * directions[..., :2] / (1 + directions[..., 2:])
     corner, end = plane.min((0, 1)), plane.max((0, 1))
     # As many cells as there are blocks, but on the axis not far from CELL_PIXELS.
-    even = CELL_PIXELS * math.sqrt(float(np.prod(end - corner)) / (view.width * view.height))
+    extent: Float = end - corner
+    pixels = view.width * view.height
+    even = CELL_PIXELS * math.sqrt(float(extent[0]) * float(extent[1]) / pixels)
     cell = float(np.clip(even, FINEST * CELL_PIXELS * pixel, COARSEST * CELL_PIXELS * pixel))
-    columns, rows = (math.ceil(float(extent) / cell) for extent in end - corner)
+    columns, rows = math.ceil(float(extent[0]) / cell), math.ceil(float(extent[1]) / cell)
     return Chart(np.eye(3), cell, corner, (rows, columns))

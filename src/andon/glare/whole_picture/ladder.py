@@ -120,7 +120,8 @@ class Ladder:
 
     def beside_at(self, scale: Float, /) -> Float:
         """(..., 3) `beside` where the chart's scale is a."""
-        return np.stack([np.interp(scale, self.scales, each) for each in self.beside.T], -1)
+        shares: list[Float] = [np.interp(scale, self.scales, each) for each in self.beside.T]
+        return np.stack(shares, -1)
 
     def _mixed(self, log_sigma: Float) -> Float:
         return np.interp(log_sigma, self.mixture.log_sigma, self.mixture.share)

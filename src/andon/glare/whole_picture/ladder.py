@@ -139,7 +139,9 @@ class Ladder:
         shares = fitted(made, sent(kernel, square), rest, expected, fine, narrow)
         made, rest = self._made(sides, cell)
         missing = sent(kernel, sides) - np.einsum("mnk,mk->mn", made, shares) - rest
-        return shares, missing[:, NEIGHBOURS]
+        # Neighbours within θ_min are on the plateau, which is right for none but all together.
+        exchanged = np.clip((fine - 0.6) / 0.2, 0, 1)[:, None]
+        return shares, exchanged * missing[:, NEIGHBOURS]
 
     def _expected(self, sides: Float) -> Float:
         """(m, 1 + n) shares of the blocks and the first rungs by W."""

@@ -37,6 +37,8 @@ LEAST, RING_STEP, AZIMUTHS = 1e-3, 0.04, 48
 # to the fourth.
 RINGED = 4
 TENT_AT, TENT_WEIGHTS = math.sqrt(0.4), (1 / 4.8, 1 - 2 / 4.8, 1 / 4.8)
+# How much offsets within θ_min count.
+PLATEAU = 0.1
 # Sweeps of the descent along one share after another; 5 shares settle to 1e-6.
 SWEEPS = 400
 # How much a share that is off what W says by all of itself counts, against the veil's error.
@@ -147,6 +149,9 @@ def fitted(
     Where pixels are `narrow` (m,), height by width, what is expected counts more.
     """
     counts = np.where(NEIGHBOURS, np.clip(2 - 2 * pixel, 0, 1)[:, None], 1.0)
+    # Within θ_min the plateau's edge is none of a sum of bumps: they are to be right beyond it.
+    beyond = np.clip((np.hypot(*OFFSETS.T) * pixel[:, None] - 0.8) / 0.2, PLATEAU, 1)
+    counts = counts * beyond
     # Beyond the kernel's end there is nothing to be had.
     counts = np.where(wanted > LEAST_SENT, counts, 0)
     weight = counts / (np.hypot(*OFFSETS.T) * np.maximum(wanted, LEAST_SENT))

@@ -1,5 +1,6 @@
 """The sun through gaps: how much light, from where, when; and what an eye makes of it."""
 
+import cv2
 import numpy as np
 import pytest
 from sunlit import VIEW, komorebi
@@ -111,7 +112,11 @@ def test_an_old_eye_sees_more_of_a_veil():
     young, old = (Seen(shown, Eye(age_years=age)).picture(1.0) for age in (20, 75))
     leaves = photometric(shown.canopy.leaves_cd_m2)
     dark = leaves < np.percentile(leaves, 30)  # bright ones lose more than they get
-    dark.ravel()[shown.canopy.pixels] = False
+    # Beside a gap all eyes scatter alike: age tells from some degrees on.
+    gaps = np.zeros(dark.shape, np.uint8)
+    gaps.ravel()[shown.canopy.pixels] = 1
+    dark &= cv2.dilate(gaps, np.ones((9, 9), np.uint8)) == 0
+    assert dark.sum() > 500
     assert (photometric(old)[dark] > 1.2 * photometric(young)[dark]).all()
 
 

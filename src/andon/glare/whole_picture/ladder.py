@@ -123,6 +123,18 @@ class Ladder:
         shares: list[Float] = [np.interp(scale, self.scales, each) for each in self.beside.T]
         return np.stack(shares, -1)
 
+    def less(self, excess: Float, /) -> Ladder:
+        """Spreads so much less, (m,) at `scales`, where that is > 0: blocks first, then rungs.
+
+        What is fitted beyond θ_min would take more within it than the kernel has.
+        """
+        nearest, excess = self.nearest.copy(), np.maximum(excess, 0)
+        for column in range(nearest.shape[1]):
+            taken = np.minimum(excess, nearest[:, column])
+            nearest[:, column] -= taken
+            excess = excess - taken
+        return replace(self, nearest=nearest)
+
     def _mixed(self, log_sigma: Float) -> Float:
         return np.interp(log_sigma, self.mixture.log_sigma, self.mixture.share)
 

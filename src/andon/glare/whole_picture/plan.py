@@ -27,7 +27,7 @@ Conventions, for the light and the veil of each channel:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -128,4 +128,6 @@ def plan_whole(view: View, kernel: Kernel, /) -> WholePlan:
     start, end = (cell * 2 ** (level - 1) * cells for cells in FAR_CELLS)
     ladder = Ladder.of(view, kernel, mixture, cell, (start, end))
     far = plan_far(charts, level, kernel, mixture, ladder)
-    return WholePlan(view, kernel, charts, ladder, far, neighbours_of(view, charts, ladder))
+    plan = WholePlan(view, kernel, charts, ladder, far, neighbours_of(view, charts, ladder))
+    most = kernel.share + kernel.core_share
+    return replace(plan, ladder=ladder.less(plan.resolved(ladder.scales) - most))

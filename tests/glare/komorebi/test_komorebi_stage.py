@@ -15,8 +15,8 @@ def test_frames_agree(gpu):
         expected, found = seen.picture(time), stage.picture(time)
         # One step of half floats at the sun's luminance; and what is seen is seen alike.
         assert np.allclose(found, expected, rtol=0.02, atol=4 * stage.cd_m2_per_unit * 2**-14)
-        # Half of the light is ten pixels of sun, of which the GPU keeps 0.22 % too little: what stays
-        # in a pixel, and what blocks spread of it, are half floats.
+        # Half of the light is ten pixels of sun, of which the GPU keeps 0.22 % too little: what
+        # stays in a pixel, and what blocks spread of it, are half floats.
         assert abs(found.sum() / expected.sum() - 1) < 3e-3
 
 

@@ -1,4 +1,4 @@
-"""Speed of the frame's glare: sources found, veil, halos and needles, on the demonstration.
+"""Speed of the frame's glare: sources found, veil and needles, on the demonstration.
 
 Timed is a frame with glare less one without. The peer is the reference's stage, which does all of
 it, too.

@@ -46,7 +46,7 @@ ROWS: tuple[Row, ...] = (
         "glare",
         1.0,
         "% RMS",
-        "the reference engine: veil, halo and needles in the photographed garage by night",
+        "the reference engine: veil and needles in the photographed garage by night",
         glare_difference,
     ),
     Row(

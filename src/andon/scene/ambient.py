@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from andon.scene.base import (
+    Fraction,
     Name,
     NonNegativeTriple,
     Positive,
@@ -16,6 +17,7 @@ from andon.scene.base import (
     exactly_one,
     refusal,
 )
+from andon.scene.camera import Camera
 from andon.scene.lamp import AnyLamp
 
 __all__ = ["Ambient", "Baked"]
@@ -67,14 +69,69 @@ class Ambient(Table):
 
 
 class Baked(Table):
-    """Precomputed illuminance maps."""
+    """Illuminance maps that `andon bake` computes with Radiance, and frames add to what lamps give.
 
-    folder: Reference = Field(description="Folder of the maps.")
+    A lamp of transport ``baked`` is in them with all its light, one of ``direct+bounce`` with what
+    surfaces reflect of it.
+    """
+
+    folder: Reference = Field(description="Folder of the maps; `andon bake` makes it.")
     lamps: tuple[Name, ...] = Field(
         default=(),
         description="Names of the lamps that are in the maps.",
     )
     depth_tolerance_m: Positive = Field(
         default=0.02,
-        description="A map is valid where its depth differs by less than this, metres.",
+        description="A map is valid where its surface is less than this off the point's, metres.",
     )
+    mode: Literal["blend", "first_valid"] = Field(
+        default="blend",
+        description="Where several maps see a point: blend them by angle and distance, or take the "
+        "first one, in the order of the cameras (as in the paper).",
+    )
+    camera: tuple[Camera, ...] = Field(
+        default=(),
+        description="[[baked.camera]]: where maps are seen from, as [rig.camera], with width and "
+        "height; default: cameras that together see the surface are found.",
+    )
+    coverage: Fraction = Field(
+        default=0.99,
+        description="Share of the visible surface that cameras that are found shall see, 0…1.",
+    )
+    most_cameras: Annotated[int, Field(ge=1, le=64)] = Field(
+        default=12,
+        description="No more cameras than this are found.",
+    )
+    map_size_px: Annotated[int, Field(ge=16, le=4096)] = Field(
+        default=384,
+        description="Pixels along the longer side of the maps of cameras that are found.",
+    )
+    quality: Literal["draft", "normal", "fine"] = Field(
+        default="normal",
+        description="How exactly Radiance computes; `andon bake --help` has errors and times.",
+    )
+    bounces: Annotated[int, Field(ge=0, le=16)] = Field(
+        default=4,
+        description="How often light is reflected (Radiance's -ab).",
+    )
+    frames_per_second: Positive | None = Field(
+        default=None,
+        description="Maps per second of a scene in which something moves; between them light is "
+        "interpolated. Default: scene.frames_per_second.",
+    )
+    include: tuple[Reference, ...] = Field(
+        default=(),
+        description="Radiance files (.rad) of things that are in the bake alone; metres, +Y up. "
+        "Lines that start programs (!) are refused unless `andon bake --trust`.",
+    )
+
+    @model_validator(mode="after")
+    def _check_cameras(self) -> Baked:
+        for index, camera in enumerate(self.camera):
+            if camera.file is None and (camera.width is None or camera.height is None):
+                raise refusal(
+                    "a map has no picture whose size it could take",
+                    key=f"camera[{index}]",
+                    remedy="state width and height",
+                )
+        return self

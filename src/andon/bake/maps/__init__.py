@@ -1,0 +1,1 @@
+"""Illuminance maps of a scene, made once."""

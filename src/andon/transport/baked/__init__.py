@@ -1,0 +1,7 @@
+"""Baked light: illuminance maps of Radiance on the surfaces of a frame."""
+
+from __future__ import annotations
+
+from andon.transport.baked.model import BakedLight, BakedMoment, IlluminanceMap
+
+__all__ = ["BakedLight", "BakedMoment", "IlluminanceMap"]

@@ -1,0 +1,93 @@
+"""What is baked: illuminance maps of one moment, and which of them a frame mixes.
+
+::
+
+    lamp × camera × moment ──▶ lux (h, w, 3)          camera × moment ──▶ depth, normal (h, w)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.quantities import Photometry
+from andon.spaces import View
+
+__all__ = ["BakedLight", "BakedMoment", "IlluminanceMap", "Mode", "Part"]
+
+Float = NDArray[np.floating[Any]]
+
+# How maps that see the same point are mixed.
+Mode = Literal["blend", "first_valid"]
+
+# What of a lamp's light is in its maps: all of it, or what surfaces reflect of it alone.
+Part = Literal["all", "bounce"]
+
+
+@dataclass(frozen=True, eq=False)
+class IlluminanceMap:
+    """Illuminance on the surface that one camera sees at one moment.
+
+    Attributes
+    ----------
+    view : where its pixels look; never distorted.
+    depth_m : (h, w) float32, as `Surface.depth` (planar for a pinhole, else distance); NaN where
+        there is no surface.
+    normal : (h, w, 3) float32 unit, world, towards the camera; NaN as `depth_m`.
+    lux : lamp name → (h, w, 3) float32 in lx, ≥ 0; 0 where there is no surface.
+    """
+
+    view: View
+    depth_m: Float
+    normal: Float
+    lux: Mapping[str, Float]
+
+
+@dataclass(frozen=True, eq=False)
+class BakedMoment:
+    """All maps of one moment, in the order of their cameras."""
+
+    time_seconds: float
+    maps: tuple[IlluminanceMap, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class BakedLight:
+    """What a frame adds of baked light.
+
+    Attributes
+    ----------
+    moments : seconds, increasing; of a still scene one. Before the first and after the last one
+        the light stands still.
+    load : number of a moment → its maps; kept by the loader, so asking again costs nothing.
+    shares : time in seconds → lamp name → factor on its maps (flicker); always all lamps.
+    parts : lamp name → what of its light is in the maps.
+    mode, depth_tolerance_m : as in [baked].
+    photometry : of the lux.
+    """
+
+    moments: tuple[float, ...]
+    load: Callable[[int], BakedMoment]
+    shares: Callable[[float], Mapping[str, float]]
+    parts: Mapping[str, Part] = field(default_factory=dict[str, Part])
+    mode: Mode = "blend"
+    depth_tolerance_m: float = 0.02
+    photometry: Photometry = "absolute"
+
+    def around(self, time_seconds: float, /) -> tuple[int, int, float]:
+        """The moments before and after a time, and the share of the later one, 0…1.
+
+        At a moment, before the first and after the last one both are the same and the share is 0.
+        """
+        times = np.asarray(self.moments)
+        later = int(np.searchsorted(times, time_seconds, side="left"))
+        if later == len(times):
+            return later - 1, later - 1, 0.0
+        if later == 0 or times[later] == time_seconds:
+            return later, later, 0.0
+        span = times[later] - times[later - 1]
+        return later - 1, later, float((time_seconds - times[later - 1]) / span)

@@ -28,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from andon.bake.tasks.events import Events
+from andon.bake.tasks.inputs import remove_inputs
 from andon.bake.tasks.lock import locked
 from andon.errors import MachineError
 from andon.files.atomic import write_bytes
@@ -97,7 +98,7 @@ class Store:
     def locked(self) -> Generator[None]:
         """Holds the folder, which is made: one process at a time writes into it.
 
-        May be nested. What a killed one has left half-written goes. Raises `MachineError` where
+        May be nested. What a killed one has left half-written, and its inputs, go. Raises `MachineError` where
         another process holds the folder, and where it cannot be written.
         """
         if self._depth:
@@ -107,6 +108,7 @@ class Store:
             self._depth += 1
             try:
                 self._remove(r"\.([0-9a-f]{64}|plan)\.[0-9a-f]{12}\.tmp\..+")
+                remove_inputs(self.folder)
                 yield
             finally:
                 self._depth -= 1

@@ -98,8 +98,8 @@ class Store:
     def locked(self) -> Generator[None]:
         """Holds the folder, which is made: one process at a time writes into it.
 
-        May be nested. What a killed one has left half-written, and its inputs, go. Raises `MachineError` where
-        another process holds the folder, and where it cannot be written.
+        May be nested. What a killed one has left half-written goes, and its inputs. Raises
+        `MachineError` where another process holds the folder, and where it cannot be written.
         """
         if self._depth:
             yield

@@ -83,7 +83,14 @@ class Store:
         total = hashlib.sha256(data).hexdigest()
         facts = {"sha256": total, "bytes": len(data), "seconds": round(seconds, 6)}
         self.note("done", key=key, **facts, worker=worker, attempt=attempt)
-        return write_bytes(self.path(key), data)
+        try:
+            return write_bytes(self.path(key), data)
+        except MachineError as error:
+            raise MachineError(
+                error.what,
+                remedy="free space or choose a folder that can be written, and begin again: what "
+                f"is done is kept in {self.folder}",
+            ) from error
 
     def note(self, event: str, /, **facts: Any) -> None:
         """Writes an event into the journal, with its time (UTC)."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from shlex import quote
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,14 +21,15 @@ from numpy.typing import NDArray
 from andon.engines.digest import digest
 from andon.engines.probes import SceneProbes, lampless_pixels, lit_pixels
 from andon.errors import InputError
-from andon.files.illuminance_maps import Manifest, read_geometry, read_lux, read_manifest
 from andon.lamps import Lamp
 from andon.lamps.flickering import flicker_factor
 from andon.quantities import Surface
 from andon.scene import Scene
 from andon.surface.model import SurfaceModel
 from andon.transport.baked.model import BakedLight, BakedMoment, BakedSeen, IlluminanceMap, Part
-from andon.transport.baked.reference import illuminance_at
+
+if TYPE_CHECKING:
+    from andon.files.illuminance_maps import Manifest
 
 __all__ = [
     "SceneBaked",
@@ -62,6 +63,8 @@ class SceneBaked:
 
     def seen(self, surface: Surface, model: SurfaceModel, time_seconds: float, /) -> BakedSeen:
         """What the maps give to a view's surface at one time."""
+        from andon.transport.baked.reference import illuminance_at
+
         asked = surface.valid & ~lampless_pixels(surface, model)
         if surface.body_id is not None:
             asked &= surface.body_id < 0
@@ -121,6 +124,8 @@ def baked_of(
             field="baked.folder",
             remedy=f"andon bake {quote(str(scene.file))} makes them",
         )
+    from andon.files.illuminance_maps import read_manifest
+
     manifest = read_manifest(folder)
     parts = _parts(scene, manifest)
     light = BakedLight(
@@ -175,6 +180,8 @@ def _parts(scene: Scene, manifest: Manifest) -> dict[str, Part]:
 
 def _loader(folder: Path, manifest: Manifest, names: tuple[str, ...]) -> Any:
     """Number of a moment → its maps, of which a few are kept."""
+
+    from andon.files.illuminance_maps import read_geometry, read_lux
 
     @lru_cache(maxsize=KEPT_MOMENTS)
     def load(index: int) -> BakedMoment:

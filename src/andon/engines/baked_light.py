@@ -61,15 +61,18 @@ class SceneBaked:
     light: BakedLight
     in_probes: bool = False
 
+    def asked(self, surface: Surface, model: SurfaceModel, /) -> NDArray[np.bool_]:
+        """(H, W) which pixels take baked light."""
+        asked = surface.valid & ~lampless_pixels(surface, model)
+        if surface.body_id is not None:
+            asked &= surface.body_id < 0
+        return asked & ~lit_pixels(surface, model) if self.in_probes else asked
+
     def seen(self, surface: Surface, model: SurfaceModel, time_seconds: float, /) -> BakedSeen:
         """What the maps give to a view's surface at one time."""
         from andon.transport.baked.reference import illuminance_at
 
-        asked = surface.valid & ~lampless_pixels(surface, model)
-        if surface.body_id is not None:
-            asked &= surface.body_id < 0
-        if self.in_probes:
-            asked &= ~lit_pixels(surface, model)
+        asked = self.asked(surface, model)
         lux, covered = np.zeros((*surface.view.shape, 3)), np.zeros(surface.view.shape, bool)
         lux[asked], covered[asked] = illuminance_at(
             self.light, time_seconds, surface.position[asked], surface.normal[asked]
@@ -204,9 +207,7 @@ def _shares(scene: Scene, time_seconds: float) -> Mapping[str, float]:
     }
 
 
-def map_facts(
-    scene: Scene, surface: SurfaceModel, lamps: Sequence[Lamp], /
-) -> dict[str, str]:
+def map_facts(scene: Scene, surface: SurfaceModel, lamps: Sequence[Lamp], /) -> dict[str, str]:
     """What illuminance maps depend on, as texts: ``geometry``, and ``lamp <name>`` for each lamp.
 
     `lamps` are all of the steady scene, at its start. How a shadow map is drawn does not count.

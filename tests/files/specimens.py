@@ -16,6 +16,7 @@ from PIL import Image
 from andon.files import write_camera, write_exr, write_volume
 from andon.spaces import View
 from gaze_files import EYELINK, own_gaze
+from map_files import small_maps
 from photometry_files import ies, ldt
 from volume_files import two_rooms
 
@@ -322,6 +323,13 @@ def _volume(path: Path) -> None:
     write_volume(path, two_rooms())
 
 
+def _map(name: str) -> Callable[[Path], None]:
+    def write(path: Path) -> None:
+        path.write_bytes(small_maps()[name])
+
+    return write
+
+
 DEPTH = np.random.default_rng(RNG_SEED).uniform(1, 5, (5, 7))
 
 # name of the reader → how to write a small valid file at a path with the reader's suffix
@@ -351,4 +359,7 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "gaze.eyelink": _write(EYELINK.encode()),
     "gaps.csv": _write(GAPS_CSV),
     "gaps.json": _write(GAPS_JSON),
+    "maps.json": _map("maps.json"),
+    "geometry.exr": _map("geometry-0.exr"),
+    "illuminance.exr": _map("light-1-0-1.exr"),
 }

@@ -14,6 +14,7 @@ from andon.files.depth import DEPTH_READERS
 from andon.files.exposures import EXPOSURE_READERS
 from andon.files.gaps import GAP_READERS
 from andon.files.gaze import GAZE_READERS
+from andon.files.illuminance_maps import ILLUMINANCE_MAP_READERS
 from andon.files.meshes import MESH_READERS
 from andon.files.photometry import PHOTOMETRY_READERS
 from andon.files.pictures import PICTURE_READERS
@@ -34,6 +35,9 @@ Kind = Literal[
     "exposures",
     "gaze",
     "gaps",
+    "maps",
+    "geometry",
+    "illuminance",
 ]
 
 READERS: tuple[Reader, ...] = (
@@ -47,6 +51,7 @@ READERS: tuple[Reader, ...] = (
     *EXPOSURE_READERS,
     *GAZE_READERS,
     *GAP_READERS,
+    *ILLUMINANCE_MAP_READERS,
 )
 
 

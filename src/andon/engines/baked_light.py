@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,15 +21,14 @@ from numpy.typing import NDArray
 from andon.engines.digest import digest
 from andon.engines.probes import SceneProbes, lampless_pixels, lit_pixels
 from andon.errors import InputError
+from andon.files.illuminance_maps import Manifest, read_geometry, read_lux, read_manifest
 from andon.lamps import Lamp
 from andon.lamps.flickering import flicker_factor
 from andon.quantities import Surface
 from andon.scene import Scene
 from andon.surface.model import SurfaceModel
 from andon.transport.baked.model import BakedLight, BakedMoment, BakedSeen, IlluminanceMap, Part
-
-if TYPE_CHECKING:
-    from andon.files.illuminance_maps import Manifest
+from andon.transport.baked.reference import illuminance_at
 
 __all__ = [
     "SceneBaked",
@@ -70,8 +69,6 @@ class SceneBaked:
 
     def seen(self, surface: Surface, model: SurfaceModel, time_seconds: float, /) -> BakedSeen:
         """What the maps give to a view's surface at one time."""
-        from andon.transport.baked.reference import illuminance_at
-
         asked = self.asked(surface, model)
         lux, covered = np.zeros((*surface.view.shape, 3)), np.zeros(surface.view.shape, bool)
         lux[asked], covered[asked] = illuminance_at(
@@ -127,8 +124,6 @@ def baked_of(
             field="baked.folder",
             remedy=f"andon bake {quote(str(scene.file))} makes them",
         )
-    from andon.files.illuminance_maps import read_manifest
-
     manifest = read_manifest(folder)
     parts = _parts(scene, manifest)
     light = BakedLight(
@@ -184,15 +179,13 @@ def _parts(scene: Scene, manifest: Manifest) -> dict[str, Part]:
 def _loader(folder: Path, manifest: Manifest, names: tuple[str, ...]) -> Any:
     """Number of a moment → its maps, of which a few are kept."""
 
-    from andon.files.illuminance_maps import read_geometry, read_lux
-
     @lru_cache(maxsize=KEPT_MOMENTS)
     def load(index: int) -> BakedMoment:
         maps: list[IlluminanceMap] = []
-        for number, camera in enumerate(manifest.cameras):
+        for number, view in enumerate(manifest.cameras):
             depth, normal = read_geometry(folder, manifest, number, index)
             lux = {name: read_lux(folder, manifest, name, number, index) for name in names}
-            maps.append(IlluminanceMap(camera.view, depth, normal, lux))
+            maps.append(IlluminanceMap(view, depth, normal, lux))
         return BakedMoment(manifest.moments[index], tuple(maps))
 
     return load

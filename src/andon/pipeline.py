@@ -64,7 +64,8 @@ class Report:
     stage_seconds : wall time of each stage.
     ignored_tables : tables and keys of the scene that this version does not draw.
     glass : where the layers of glass appear and what is in focus; None without glass.
-    uncovered_share : of the pixels that take baked light, those that no illuminance map sees.
+    uncovered_share : of the pixels that take baked light, those that no illuminance map sees;
+        None without [baked].
     """
 
     engine: str
@@ -81,7 +82,7 @@ class Report:
     stage_seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     ignored_tables: tuple[str, ...] = ()
     glass: GlassReport | None = None
-    uncovered_share: float = 0.0
+    uncovered_share: float | None = None
 
 
 @dataclass(frozen=True)
@@ -283,7 +284,7 @@ class Renderer:
             glass=glass.report(layered, self._moment.focus, self._moment.lamps)
             if glass and layered
             else None,
-            uncovered_share=0.0 if baked is None else baked.uncovered_share,
+            uncovered_share=None if baked is None else baked.uncovered_share,
         )
 
 

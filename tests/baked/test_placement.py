@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from andon.transport.baked.placement import suggested_views
-from tests.worlds import block
+from worlds import block
 
 MOST = {"coverage": 0.99, "most_cameras": 12, "map_size_px": 384}
 

@@ -63,11 +63,8 @@ def free_places(
         places = places[sight.backs <= BACKS_IN_FRONT]
     elif len(starts) == 0 or not walls.sight(starts).buried.any():
         places = places[~sight.buried]
-    if len(starts):
-        connected = _connected(walls, starts, places)
-    else:
-        connected = _most_enclosed(walls, places)
-    return places[connected][:MOST_PLACES]
+    inside = _connected(walls, starts, places) if len(starts) else _most_enclosed(walls, places)
+    return places[inside][:MOST_PLACES]
 
 
 def _jittered(geometry: Geometry, spacing: float, seed: int) -> Float:

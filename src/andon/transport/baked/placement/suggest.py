@@ -11,8 +11,8 @@ from andon.errors import InputError
 from andon.quantities import Geometry
 from andon.rays import RayScene
 from andon.spaces import View
-from andon.transport.baked.placement.frames import map_view, shown_points
 from andon.transport.baked.placement.choose import Chosen
+from andon.transport.baked.placement.frames import map_view, shown_points
 from andon.transport.baked.placement.greedy import HALF_WIDTH, looks_from
 from andon.transport.baked.placement.model import Ended, Suggested
 from andon.transport.baked.placement.samples import Samples, surface_samples

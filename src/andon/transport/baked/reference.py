@@ -22,6 +22,7 @@ from andon.transport.baked.model import BakedLight, BakedMoment, IlluminanceMap,
 from andon.transport.baked.texels import (
     BORDER_TEXELS,
     LEAST_WEIGHT,
+    MOST_DENSITY,
     NORMAL_COSINES,
     VALID_LEAST,
     Texels,
@@ -134,7 +135,7 @@ def map_illuminance(
     share = np.maximum((sums - VALID_LEAST) / (1 - VALID_LEAST), 0)
     valid /= np.maximum(sums, VALID_LEAST)[:, None]
     trust = np.einsum("nk,nk->n", valid, texels.trust[index])
-    density = facing[looked] * texel_density(seen.view, position[looked])
+    density = np.minimum(facing[looked] * texel_density(seen.view, position[looked]), MOST_DENSITY)
     lux[looked] = np.einsum("nk,nkc->nc", valid, _mixed(seen, shares)[index])
     feathered = border[looked] * trust * share + LEAST_WEIGHT
     weight[looked] = np.where(share > 0, density**2 * feathered, 0.0)
@@ -146,7 +147,7 @@ def _agreement(
 ) -> Float:
     """(n, 4) 0…1: how far each texel's surface is that of the point."""
     theirs = texels.normal[index]
-    off_plane = np.einsum("nkc,nc->nk", theirs, reach) - texels.offset[index]
+    off_plane = np.einsum("nkc,nkc->nk", theirs, reach[:, None] - texels.reach[index])
     low, high = NORMAL_COSINES
     cosine = np.einsum("nkc,nc->nk", theirs, normal)
     alike = np.clip((cosine - low) / (high - low), 0, 1)

@@ -15,6 +15,7 @@ from andon.transport.baked.model import IlluminanceMap
 __all__ = [
     "BORDER_TEXELS",
     "LEAST_WEIGHT",
+    "MOST_DENSITY",
     "NORMAL_COSINES",
     "VALID_LEAST",
     "Texels",
@@ -31,6 +32,8 @@ VALID_LEAST = 1e-3
 BORDER_TEXELS = 16.0
 # … and so many at the edges of what it sees.
 EDGE_TEXELS = 8
+# Texels per m², at most: nearer than that to a camera, more mean nothing, and squares fit float32.
+MOST_DENSITY = 1e10
 # What is left of a weight at a border: it counts where nothing else does.
 LEAST_WEIGHT = 1e-8
 
@@ -43,13 +46,13 @@ class Texels:
     ----------
     valid : (t,) there is a surface, and its light is known.
     normal : (t, 3) unit, world; 0 where not valid.
-    offset : (t,) m, of the tangent plane from the map's camera: n·(P − camera).
+    reach : (t, 3) m, world axes, from the map's camera to the surface; 0 where not valid.
     trust : (t,) 0…1, rising from the edges of what the map sees inwards.
     """
 
     valid: NDArray[np.bool_]
     normal: Float
-    offset: Float
+    reach: Float
     trust: Float
 
 
@@ -63,26 +66,27 @@ def texels_of(seen: IlluminanceMap, depth_tolerance_m: float, /) -> Texels:
     reach = rotate(view.world_from_camera, view.rays_planar())
     reach = reach * np.where(known, seen.depth_m, 0.0)[..., None]
     normal = np.where(known[..., None], seen.normal, 0.0).astype(np.float64)
-    offset = np.einsum("hwc,hwc->hw", normal, reach)
-    edges = _edges(known, normal, offset, reach, view.projection == "latlong", depth_tolerance_m)
+    edges = _edges(known, normal, reach, view.projection == "latlong", depth_tolerance_m)
     trust = _inwards(edges, view.projection == "latlong")
-    return Texels(known.ravel(), normal.reshape(-1, 3), offset.ravel(), trust.ravel())
+    return Texels(known.ravel(), normal.reshape(-1, 3), reach.reshape(-1, 3), trust.ravel())
 
 
 def _edges(
-    known: NDArray[np.bool_], normal: Float, offset: Float, reach: Float, goes_round: bool,
+    known: NDArray[np.bool_],
+    normal: Float,
+    reach: Float,
+    goes_round: bool,
     depth_tolerance_m: float,
-) -> NDArray[np.bool_]:  # fmt: skip
+) -> NDArray[np.bool_]:
     """(h, w) texels of which a neighbour shows another surface, or none."""
     edges = ~known
     for axis in (0, 1):
-        other = {
-            n: np.roll(a, -1, axis)
-            for n, a in (("known", known), ("normal", normal), ("reach", reach))
-        }
-        cosine = np.einsum("hwc,hwc->hw", normal, other["normal"])
-        off_plane = np.abs(np.einsum("hwc,hwc->hw", normal, other["reach"]) - offset)
-        jump = ~(other["known"] & (cosine > NORMAL_COSINES[0]) & (off_plane < depth_tolerance_m))
+        next_known, next_normal, next_reach = (
+            np.roll(values, -1, axis) for values in (known, normal, reach)
+        )
+        cosine = np.einsum("hwc,hwc->hw", normal, next_normal)
+        off_plane = np.abs(np.einsum("hwc,hwc->hw", normal, next_reach - reach))
+        jump = ~(next_known & (cosine > NORMAL_COSINES[0]) & (off_plane < depth_tolerance_m))
         if axis == 0 or not goes_round:
             jump[(slice(None),) * axis + (-1,)] = False
         edges |= jump | np.roll(jump, 1, axis)

@@ -212,6 +212,30 @@ middle.png 0.5 2 8 0 0
 dark.png   0.125 8 8 0 0
 """
 
+RAD = b"""# a lamp of measured light on a table
+void brightdata measured
+5 corr d.dat source.cal src_theta src_phi2
+0
+1 1
+
+measured light glowing
+0
+0
+3 100 90 80
+
+glowing sphere bulb 0 0 4 0 1 0 .05
+void plastic wood 0 0 5 .3 .2 .1 0 0
+void alias oak wood
+oak polygon table
+0
+0
+12
+ 0 0 0
+ 0 0 1
+ 1 0 1
+ 1 0 0
+"""
+
 RESPONSE_CSV = b"""encoded,linear_r,linear_g,linear_b
 0,0,0,0
 0.5,0.2,0.21,0.22
@@ -323,6 +347,11 @@ def _volume(path: Path) -> None:
     write_volume(path, two_rooms())
 
 
+def _rad(path: Path) -> None:
+    path.write_bytes(RAD)
+    (path.parent / "d.dat").write_bytes(b"1\n0 1 2\n.5 1\n")
+
+
 def _map(name: str) -> Callable[[Path], None]:
     def write(path: Path) -> None:
         path.write_bytes(small_maps()[name])
@@ -362,4 +391,5 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "maps.json": _map("maps.json"),
     "geometry.exr": _map("geometry-0.exr"),
     "illuminance.exr": _map("light-1-0-1.exr"),
+    "radiance.rad": _rad,
 }

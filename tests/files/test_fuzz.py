@@ -64,7 +64,7 @@ def by_name(reader: Reader) -> str:
 def test_every_registered_reader_has_a_specimen_and_a_kind() -> None:
     assert [reader.name for reader in READERS] == list(SPECIMENS)
     kinds = {"picture", "depth", "mesh", "camera", "response", "photometry", "volume"}
-    kinds |= {"exposures", "gaze", "gaps", "maps", "geometry", "illuminance"}
+    kinds |= {"exposures", "gaze", "gaps", "maps", "geometry", "illuminance", "radiance"}
     assert {reader.kind for reader in READERS} == kinds
 
 

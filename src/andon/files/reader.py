@@ -29,7 +29,7 @@ class Reader:
     ----------
     name : ``kind.format``; the kind is ``picture``, ``depth``, ``mesh``, ``camera``, ``response``,
         ``photometry``, ``volume``, ``exposures``, ``gaze``, ``gaps``, or, of baked light, ``maps``,
-        ``geometry`` or ``illuminance``.
+        ``geometry``, ``illuminance`` or ``radiance``.
     suffixes : lower case, with the dot.
     read : the function that reads it.
     """

@@ -18,6 +18,7 @@ from andon.files.illuminance_maps import ILLUMINANCE_MAP_READERS
 from andon.files.meshes import MESH_READERS
 from andon.files.photometry import PHOTOMETRY_READERS
 from andon.files.pictures import PICTURE_READERS
+from andon.files.radiance_text import RADIANCE_READERS
 from andon.files.reader import Reader, choose_reader
 from andon.files.responses import RESPONSE_READERS
 from andon.files.volumes import VOLUME_READERS
@@ -38,6 +39,7 @@ Kind = Literal[
     "maps",
     "geometry",
     "illuminance",
+    "radiance",
 ]
 
 READERS: tuple[Reader, ...] = (
@@ -52,6 +54,7 @@ READERS: tuple[Reader, ...] = (
     *GAZE_READERS,
     *GAP_READERS,
     *ILLUMINANCE_MAP_READERS,
+    *RADIANCE_READERS,
 )
 
 

@@ -72,24 +72,36 @@ def watching_views(scene: Scene, shapes: dict[str, tuple[int, int]], /) -> tuple
 
 
 def found_views(
-    scene: Scene, baked: Baked, geometry: Geometry, watching: Sequence[View], /
-) -> tuple[View, ...]:
-    """Views that together see what the rig sees of `geometry`. Raises `InputError` for none."""
-    suggested = suggested_views(
-        geometry,
-        watching,
-        coverage=baked.coverage,
-        most_cameras=baked.most_cameras,
-        map_size_px=baked.map_size_px,
-        seed=scene.scene.seed,
-    )
-    if not suggested.views:
-        raise InputError(
-            "there is no surface that a camera could see",
-            file=scene.file,
-            field="baked.camera",
-            remedy="state [[baked.camera]] with position and look_at",
+    scene: Scene,
+    baked: Baked,
+    geometry: Geometry,
+    watching: Sequence[View],
+    /,
+    *,
+    one_sided: bool = False,
+) -> tuple[tuple[View, ...], float]:
+    """Views that together see `geometry`, those of the rig first; and the share that they see.
+
+    `one_sided` : backs of the surface are unknown, as those of a depth image. Raises `InputError`
+    where nothing can be seen.
+    """
+    try:
+        suggested = suggested_views(
+            geometry,
+            watching,
+            coverage=baked.coverage,
+            most_cameras=baked.most_cameras,
+            map_size_px=baked.map_size_px,
+            seed=scene.scene.seed,
+            one_sided=one_sided,
         )
-    return tuple(
-        replace(view, name=map_name(number)) for number, view in enumerate(suggested.views)
-    )
+    except InputError as error:
+        raise InputError(
+            error.rule,
+            file=scene.file,
+            field=error.field,
+            remedy=error.remedy or "state [[baked.camera]] with position and look_at",
+        ) from error
+    views = enumerate(suggested.views)
+    named = tuple(replace(view, name=map_name(number)) for number, view in views)
+    return named, suggested.coverage

@@ -106,7 +106,7 @@ class _Maker:
         }
 
     def worlds(self, seconds: float) -> dict[str, tuple[str, int]]:
-        """Lamp → the bundle of what it lights at a time, and at which -ab its own light is whole."""
+        """Lamp → the bundle of what it lights at a time, and the ``-ab`` of its own light."""
         stands = self._standing(seconds)
         bodies = digest(self.world.bodies(seconds))
         found: dict[str, tuple[str, int]] = {}

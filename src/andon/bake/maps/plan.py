@@ -30,7 +30,8 @@ class MapsPlan:
     folder : of the maps.
     views : where the maps are seen from.
     seen : for each view its share of pixels that show a surface, 0…1, at the first moment.
-    stated : the views are those of [[baked.camera]]; else they were found.
+    coverage : share of the surface that views that were found see together; None: they are those
+        of [[baked.camera]].
     moments : seconds.
     parts : name of each baked lamp → what of its light is baked.
     quality : how exactly.
@@ -40,7 +41,7 @@ class MapsPlan:
     folder: Path
     views: tuple[View, ...]
     seen: tuple[float, ...]
-    stated: bool
+    coverage: float | None
     moments: tuple[float, ...]
     parts: dict[str, Part]
     quality: Quality
@@ -105,14 +106,17 @@ def planned(scene: Scene, /, *, trust: bool = False) -> Planned:
     world = BakedWorld(scene, prepared)
     geometry = world.visible(0.0)
     shapes = {name: frame.view.shape for name, frame in prepared.frames.items()}
-    views = stated or found_views(scene, baked, geometry, watching_views(scene, shapes))
+    views, coverage = stated, None
+    if not stated:
+        watching, one_sided = watching_views(scene, shapes), bool(prepared.surface.depth)
+        views, coverage = found_views(scene, baked, geometry, watching, one_sided=one_sided)
     seen = tuple(
         _seen_share(scene, world, view, number, moments) for number, view in enumerate(views)
     )
     transports = {table.name: table.transport for table in scene.lamp}
     parts = {name: _part(transports[name]) for name in baked.lamps}
     quality = QUALITIES[baked.quality]
-    plan = MapsPlan(folder, views, seen, bool(stated), moments, parts, quality, baked.bounces)
+    plan = MapsPlan(folder, views, seen, coverage, moments, parts, quality, baked.bounces)
     return Planned(plan, world, include)
 
 

@@ -67,8 +67,8 @@ def geometry(inputs: Mapping[str, Path], settings: Mapping[str, Any], /) -> byte
 def light(inputs: Mapping[str, Path], settings: Mapping[str, Any], /) -> bytes:
     """The file with the illuminance of one lamp (``world``) on what a map sees (``points``).
 
-    Settings: ``view``, ``quality`` (a name and its options), ``bounces``, ``part``, ``direct_bounces``,
-    ``photometry``.
+    Settings: ``view``, ``quality`` (a name and its options), ``bounces``, ``part``,
+    ``direct_bounces``, ``photometry``.
     """
     quality = QUALITIES[settings["quality"]["name"]]
     if quality_settings(quality.name) != dict(settings["quality"]):

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from andon.bake.bake import DEFAULT_STATE, bake_probes
 from andon.bake.journal import Journal
-from andon.bake.lock import locked
 from andon.bake.panoramas import check_panoramas
 from andon.bake.report import BakeReport
 from andon.bake.runner import Progress
 from andon.bake.states import check_states, joined, planned
+from andon.bake.tasks.lock import locked
 from andon.engines.reading import read_pictures, view_of
 from andon.errors import InputError
 from andon.files.atomic import write_bytes
@@ -72,7 +72,7 @@ def bake_file(
     check_panoramas(scene, placed)
     plan = planned(scene, probes, placed, probes.state or DEFAULT_STATE)
     folder = path.with_name(path.name + ".bake")
-    with locked(folder):
+    with locked(folder, of="this volume", remedy="wait for it, or name another probes.volume"):
         check_states(path, plan, replaces=replaces)
         _check_folder(folder)
         journal = Journal(folder)

@@ -127,7 +127,7 @@ def _tile(
     valid = np.isfinite(depth_m)
     mean = float(lux[valid].mean()) if valid.any() else 0.0
     name = printable(manifest.cameras[camera].name)
-    caption = f"{camera}: {name}, mean {mean:.3g} lx"
+    caption = f"{camera}: {name}, mean {float(f'{mean:.3g}'):g} lx"
     return _Tile(caption, lux, valid, normal, depth_m)
 
 

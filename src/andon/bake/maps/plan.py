@@ -11,7 +11,6 @@ from andon.bake.maps.world import BakedWorld
 from andon.engines.baked_light import part_of
 from andon.engines.prepared import prepare
 from andon.errors import InputError
-from andon.files.radiance_text import read_radiance_text
 from andon.scene import Scene
 from andon.scene.ambient import Baked
 from andon.spaces import View
@@ -94,12 +93,7 @@ def planned(scene: Scene, /, *, trust: bool = False) -> Planned:
     """
     baked = _table(scene)
     folder = _folder(scene, baked)
-    include = {
-        f"include{number}.rad": read_radiance_text(
-            scene.path(name, f"baked.include[{number}]"), trust=trust
-        )
-        for number, name in enumerate(baked.include)
-    }
+    include = _included(scene, baked, trust=trust)
     moments = moments_of(scene)
     stated = stated_views(scene, baked)
     prepared = prepare(scene, drawn=False, maps=False)
@@ -147,6 +141,20 @@ def _table(scene: Scene) -> Baked:
                 f"names {name!r} twice", file=scene.file, field=f"baked.lamps[{index}]"
             )
     return scene.baked
+
+
+def _included(scene: Scene, baked: Baked, *, trust: bool) -> dict[str, bytes]:
+    """The Radiance files of [baked], by names that do not depend on where they lie."""
+    if not baked.include:
+        return {}
+    from andon.files.radiance_text import read_radiance_text
+
+    return {
+        f"include{number}.rad": read_radiance_text(
+            scene.path(name, f"baked.include[{number}]"), trust=trust
+        )
+        for number, name in enumerate(baked.include)
+    }
 
 
 def _folder(scene: Scene, baked: Baked) -> Path:

@@ -12,17 +12,19 @@ from numpy.typing import NDArray
 
 from andon.bake.journal import Journal, Result
 from andon.bake.places import far_m
+from andon.bake.radiance_bounces import bounce_notes, traced_light
 from andon.bake.report import BakeReport
 from andon.bake.runner import Progress, Runner
 from andon.bake.task import PARTS, Look, Pictures, bounced, encoded, first_light
 from andon.engines.baked import dimming_of, facts_of
 from andon.engines.cubes import CubeSetting, cube_engine, cube_setting
+from andon.engines.cubes_radiance import check_radiance
 from andon.engines.digest import digest
 from andon.engines.photographless import white_cd_m2
 from andon.engines.prepared import prepare
 from andon.errors import InputError
 from andon.files.volumes import Cells, Distances, ProbeVolume, Zone
-from andon.harmonics import deringed
+from andon.harmonics import coefficient_count, deringed
 from andon.scene import Scene
 from andon.scene.probes import Probes
 from andon.surface.objects import joined
@@ -110,8 +112,12 @@ class _Bake:
         self.base = self._base()
         self.own = [index for index, p in enumerate(placed.panoramas) if p is None]
         self.passes = _passes(self.setting, self.probes.bounces)
+        self.by_radiance = self.probes.bounces_by == "radiance" and bool(self.own)
+        if self.by_radiance and self.setting is not None:
+            check_radiance(scene, self.setting)
         self.recoded = self.probes.encoding == "srgb8" and bool(self.own)
-        later = len(self.passes) + self.recoded
+        later = min(len(self.passes), 1) if self.by_radiance else len(self.passes)
+        later += self.recoded
         self.runner.total = placed.count + later * len(self.own)
 
     def run(self) -> Baked:
@@ -124,11 +130,11 @@ class _Bake:
         # What lights the first pass is what emits; where nothing does, what lamps light.
         light = emitted if 1 in self.passes else emitted + reflected
         lit_by: ProbeLight | None = None
-        for bounce in self.passes:
+        for bounce in () if self.by_radiance else self.passes:
             lit_by = self._probe_light(light, distances)
             light = emitted + reflected + self._bounce(bounce, lit_by)
-        if not self.passes:
-            light = emitted + reflected
+        if self.by_radiance or not self.passes:
+            light = emitted + reflected + self._radiance()
         coefficients = ambient + light
         recoded: list[Result] = []
         if self.recoded:
@@ -199,6 +205,16 @@ class _Bake:
         total[self.own] = [result["reflected"] for result in results]
         return total
 
+    def _radiance(self) -> Float:
+        """(n, k, 3) what Radiance finds around every probe; nothing around panoramas."""
+        total = np.zeros((self.placed.count, coefficient_count(self.probes.order), 3))
+        if self.by_radiance and self.passes:
+            assert self.small is not None
+            total[self.own] = traced_light(
+                self.runner, self.small, self.placed, self.probes, self.own, self._first_key
+            )
+        return total
+
     def _recode(self, light: ProbeLight | None) -> list[Result]:
         assert self.look is not None
         look, white, lit = self.look, self._white(), self.probes.bounces > 0
@@ -264,6 +280,7 @@ class _Bake:
             "encoding": probes.encoding,
             "solid_angle": probes.solid_angle,
             "bounces": str(probes.bounces),
+            **bounce_notes(probes),
             **self._facts(state),
         }
         return replace(

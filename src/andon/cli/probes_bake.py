@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from andon.cli.bar import Bar
 from andon.cli.console import Interrupted, note
 from andon.cli.options import EngineOption
 from andon.errors import InputError
@@ -54,7 +55,7 @@ def bake(
 
     loaded = _in_state(load_scene(scene), state)
     try:
-        with _Bar() as bar:
+        with Bar("placing") as bar:
             written = bake_file(
                 loaded, engine=engine, fresh=fresh, replaces=replace, progress=bar.show
             )
@@ -79,27 +80,6 @@ def _in_state(scene: Scene, state: str | None) -> Scene:
         )
     probes = scene.probes.model_copy(update={"state": state})
     return scene.model_copy(update={"probes": probes})
-
-
-class _Bar:
-    """A progress bar on stderr, with the time left."""
-
-    def __enter__(self) -> _Bar:
-        from rich.console import Console
-        from rich.progress import Progress
-
-        console = Console(stderr=True)
-        # Where nobody looks at it, all that is left of a bar is an empty line.
-        self._bar = Progress(console=console, transient=True, disable=not console.is_terminal)
-        self._bar.start()
-        self._task = self._bar.add_task("placing", total=None)
-        return self
-
-    def show(self, done: int, of: int, what: str) -> None:
-        self._bar.update(self._task, completed=done, total=of, description=what)
-
-    def __exit__(self, *_: object) -> None:
-        self._bar.stop()
 
 
 def _notes(written: Written) -> list[str]:

@@ -34,7 +34,15 @@ the relighting paper, section 2.4, for diffuse surfaces and one map for each lam
 
 from __future__ import annotations
 
+from andon.transport.baked.radiance.bodies import unsaid
 from andon.transport.baked.radiance.lamps import is_distant_glow
+from andon.transport.baked.radiance.painted import with_triangle_reflectance
 from andon.transport.baked.radiance.scene import OCTREE, radiance_bundle
 
-__all__ = ["OCTREE", "is_distant_glow", "radiance_bundle"]
+__all__ = [
+    "OCTREE",
+    "is_distant_glow",
+    "radiance_bundle",
+    "unsaid",
+    "with_triangle_reflectance",
+]

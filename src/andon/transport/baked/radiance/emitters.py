@@ -57,7 +57,7 @@ class Tiles:
 
 
 def tiles_of(lamp: AnyAreaLamp, count: int, /) -> list[Tiles]:
-    """About `count` tiles (at least half as many, or as many as the mesh has) of the lamp's area."""
+    """About `count` tiles of the lamp; no fewer than a mesh has."""
     match lamp:
         case SphereLamp():
             parts = [Tiles(_ball(lamp, count), lamp.luminance_cd_m2)]

@@ -48,6 +48,8 @@ __all__ = [
 
 # Maps of a moment; baked.wgsl has room for two moments.
 MAX_MAPS = 64
+# Of them, those that a shader is compiled for.
+MOST_NAMED = 8
 # Layers of a texture, and numbers in mix.wgsl.
 MAX_LAMPS = 256
 # The largest lux of a lamp is stored as this: below the largest half float, 2³¹ above the smallest
@@ -189,24 +191,27 @@ def settings_text(views: Sequence[View], lamps: int, mode: Mode, /) -> str:
 
 
 def moments_text(maps: int, moments: int, /) -> str:
-    """The module that stands in for moments.wgsl: every map of a moment by its number.
+    """The module that stands in for moments.wgsl: the maps of the moments in use, one by one.
 
-    Numbers that are known when a shader is compiled: a software rasteriser reads a camera at a
-    number of its own once for each pixel of a group, and a loop that might be one step costs twice
-    what the step does.
+    Maps are called by numbers that are known when a shader is compiled, the first `MOST_NAMED`: a
+    software rasteriser reads a camera whose number is a variable once for each pixel of a group,
+    which costs a quarter more; but 64 named ones take a minute to compile.
     """
     lines = ["//!import andon/transport/baked/lookup.wgsl"]
     for moment, name in enumerate(("earlier", "later")):
-        count = maps if moment < moments else 0
+        first, count = moment * MAX_MAPS, maps if moment < moments else 0
+        named = [_call(f"{first + number}") for number in range(min(count, MOST_NAMED))]
         lines += [
             f"fn baked_{name}(position: vec3f, normal: vec3f) -> vec4f {{",
             "  var total = vec4f(0.0);",
-            *(
-                f"  total += map_light(baked_maps[{moment * MAX_MAPS + number}], position, normal, "
-                "total.w);"
-                for number in range(count)
-            ),
-            "  return known_light(total);",
-            "}",
+            *named,
         ]
+        if count > MOST_NAMED:
+            loop = f"var k = {first + MOST_NAMED}; k < {first + count}; k++"
+            lines += [f"  for ({loop}) {{", f"  {_call('k')}", "  }"]
+        lines += ["  return known_light(total);", "}"]
     return "\n".join(lines)
+
+
+def _call(number: str) -> str:
+    return f"  total += map_light(baked_maps[{number}], position, normal, total.w);"

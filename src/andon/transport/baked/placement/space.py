@@ -70,10 +70,11 @@ def free_places(
 def _jittered(geometry: Geometry, spacing: float, seed: int) -> Float:
     """A place anywhere in each box of a grid, shuffled, in round numbers."""
     corners = geometry.positions[geometry.triangles.ravel()]
-    low, size = corners.min(axis=0), np.ptp(corners, axis=0)
+    low: Float = corners.min(axis=0)
+    size: Float = corners.max(axis=0) - low
     # A flat scene has space before it.
-    thin = size < spacing
-    low, size = np.where(thin, low - size.max() / 4, low), np.where(thin, size.max() / 2, size)
+    thin, most = size < spacing, float(size.max())
+    low, size = np.where(thin, low - most / 4, low), np.where(thin, most / 2, size)
     counts = np.maximum(np.round(size / spacing), 1).astype(np.int64)
     random = np.random.default_rng([seed, 1])
     index = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, 3)

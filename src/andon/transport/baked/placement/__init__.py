@@ -19,6 +19,7 @@ frames     maps from the frame's cameras
 choose     takes cameras until enough is seen
 suggest    all of it
 check      a camera that sees nothing
+plan       a picture of it
 =========  ====================================================================================
 
 Terms
@@ -30,6 +31,7 @@ Terms
 
 from andon.transport.baked.placement.check import check_view_sees
 from andon.transport.baked.placement.model import Ended, Suggested
+from andon.transport.baked.placement.plan import plan_picture
 from andon.transport.baked.placement.suggest import suggested_views
 
-__all__ = ["Ended", "Suggested", "check_view_sees", "suggested_views"]
+__all__ = ["Ended", "Suggested", "check_view_sees", "plan_picture", "suggested_views"]

@@ -11,7 +11,7 @@ from typing import Any
 import typer
 from typer.core import TyperCommand
 
-from andon.cli import bake, bake_status
+from andon.cli import bake, bake_show, bake_status
 from andon.cli.default_command import DefaultCommand
 
 __all__ = ["MAPS", "bake_app"]
@@ -58,3 +58,4 @@ def _bake(context: typer.Context) -> None:
 # In the order of ``andon bake --help``.
 bake_app.command(MAPS, cls=_WithQualities)(bake.maps)
 bake_app.command("status")(bake_status.status)
+bake_app.command("show")(bake_show.show)

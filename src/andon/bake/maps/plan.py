@@ -147,14 +147,12 @@ def _included(scene: Scene, baked: Baked, *, trust: bool) -> dict[str, bytes]:
     """The Radiance files of [baked], by names that do not depend on where they lie."""
     if not baked.include:
         return {}
-    from andon.files.radiance_text import read_radiance_text
+    from andon.files.radiance_text import read_included
 
-    return {
-        f"include{number}.rad": read_radiance_text(
-            scene.path(name, f"baked.include[{number}]"), trust=trust
-        )
-        for number, name in enumerate(baked.include)
-    }
+    paths = [
+        scene.path(name, f"baked.include[{number}]") for number, name in enumerate(baked.include)
+    ]
+    return read_included(paths, trust=trust)
 
 
 def _folder(scene: Scene, baked: Baked) -> Path:

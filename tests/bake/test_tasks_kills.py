@@ -113,7 +113,7 @@ def test_killed_at_random_and_resumed(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(900)
+@pytest.mark.timeout(1800)
 def test_killed_a_hundred_times(tmp_path):
     kills, bakes = killed_at_random(tmp_path, 100, seed=100)
     assert kills == 100

@@ -46,6 +46,10 @@ class Journal:
         path = None if self._store is None else self._store.get(key)
         return None if path is None else _unpacked(_bytes_of(path))
 
+    def has(self, key: str, /) -> bool:
+        """Whether there is a file named `key`; `get` says whether it is whole."""
+        return self._store is not None and self._store.path(key).exists()
+
     def put(self, key: str, result: Result, /) -> None:
         """Keeps a result. Raises `MachineError` where it cannot be written."""
         if self._store is not None:

@@ -13,8 +13,8 @@ from worlds_of_probes import lamp_room
 import andon.bake.bake as bake_module
 from andon.bake import bake_file
 from andon.bake.journal import Journal
-from andon.bake.tasks.lock import locked
 from andon.bake.runner import Runner
+from andon.bake.tasks.lock import locked
 from andon.errors import InputError, MachineError
 from andon.files.volumes import read_volume
 from worlds import block, write_glb

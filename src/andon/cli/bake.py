@@ -73,7 +73,7 @@ def maps(
     loaded = _with_quality(load_scene(scene), quality)
     chosen = _workers(workers, scheduler, (tls_ca, tls_cert, tls_key))
     if dry_run:
-        _print_plan(plan_maps(loaded, trust=trust), workers)
+        _print_plan(plan_maps(loaded, trust=trust), getattr(chosen, "count", 1))
         return
     try:
         with Bar("looking for cameras") as bar:
@@ -182,8 +182,7 @@ def _print(rows: list[tuple[str, str]]) -> None:
     Console(stderr=True, highlight=False, markup=False).print(table)
 
 
-def _print_plan(plan: MapsPlan, workers: int | None) -> None:
-    count = workers or 1
+def _print_plan(plan: MapsPlan, count: int) -> None:
     seconds = plan.estimated_seconds / count
     _print(
         [

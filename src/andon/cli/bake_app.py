@@ -40,8 +40,8 @@ bake_app = typer.Typer(cls=_SceneFirst, subcommand_metavar="{SCENE | COMMAND [AR
 def _bake(context: typer.Context) -> None:
     """Bake global illumination: what lamps give to a room, reflections included, by Radiance.
 
-    `andon bake SCENE` makes the illuminance maps of the scene's [baked] table, or goes on with them;
-    its options (workers, cluster, quality) are those of `andon bake maps --help`.
+    `andon bake SCENE` makes the illuminance maps of the scene's [baked] table, or goes on with
+    them; its options (workers, cluster, quality) are those of `andon bake maps --help`.
 
     Examples:
 

@@ -106,12 +106,13 @@ def check_counted_once(scene: Scene, probes: SceneProbes | None, model: SurfaceM
 
 
 def baked_of(
-    scene: Scene, surface: SurfaceModel, lamps: Sequence[Lamp], /
+    scene: Scene, surface: SurfaceModel, lamps: Sequence[Lamp], /, *, has_probes: bool
 ) -> tuple[SceneBaked | None, tuple[str, ...]]:
     """The maps that [baked] names, or None; and what is to be said of them.
 
-    `lamps` are all of the scene, at its start. Raises `InputError` where there are none yet, where
-    one lacks a lamp of the scene, and where they hold other light than the scene asks for.
+    `lamps` are all of the scene, at its start; `has_probes`: objects may be lit by probes. Raises
+    `InputError` where there are none yet, where one lacks a lamp of the scene, and where they hold
+    other light than the scene asks for.
     """
     table = scene.baked
     if table is None or not table.lamps:
@@ -135,7 +136,7 @@ def baked_of(
         depth_tolerance_m=table.depth_tolerance_m,
         photometry=scene.photometry,
     )
-    in_probes = any(lamp.in_probes for lamp in scene.lamp if lamp.name in parts)
+    in_probes = has_probes and any(lamp.in_probes for lamp in scene.lamp if lamp.name in parts)
     return SceneBaked(light, in_probes), _changes(scene, manifest, surface, lamps)
 
 

@@ -23,6 +23,7 @@ from andon.lamps import Lamp
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface.stage import GpuSurface
 from andon.transport.baked.model import BakedSeen
+from andon.transport.baked.stage import BakedBuffers
 from andon.transport.direct import stage as direct
 from andon.transport.probes.stage import ProbeBuffers
 
@@ -52,10 +53,8 @@ class GpuEngine:
             slots = prepared.surface.object_of_slot
             self.probes = ProbeBuffers(self.gpu, probes.dimmed, probes.lookup, slots)
         captured = frozenset[str]() if probes is None else probes.captured
-        self.baked: Any = None
+        self.baked: BakedBuffers | None = None
         if prepared.baked is not None:
-            from andon.transport.baked.stage import BakedBuffers
-
             self.baked = BakedBuffers(self.gpu, prepared.baked.light)
         self.direct = direct.DirectStage(
             self.gpu,

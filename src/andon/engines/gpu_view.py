@@ -27,12 +27,12 @@ from andon.gpu.textures import make_texture
 from andon.quantities import CameraFrame
 from andon.surface.model import SurfaceModel
 from andon.surface.stage import SurfaceStage
+from andon.transport.baked.stage import BakedPicture
 from andon.transport.direct import stage as direct
 from andon.transport.probes.stage import ProbePicture
 
 if TYPE_CHECKING:
     from andon.engines.gpu import GpuEngine
-    from andon.transport.baked.stage import BakedPicture
 
 __all__ = ["GpuView"]
 
@@ -75,8 +75,6 @@ class GpuView:
         own: dict[int, Any] = {0: ("uint", seen.texture.view), 1: ("uniform", seen.view_buffer)}
         self.baked: BakedPicture | None = None
         if engine.baked is not None:
-            from andon.transport.baked.stage import BakedPicture
-
             self.baked = BakedPicture(engine.baked, view, seen.texture.view, seen.view_buffer)
             self._moved = Changes(view, ())
             own[6] = ("float", self.baked.lux.view)

@@ -158,7 +158,9 @@ def prepare(scene: Scene, /, *, drawn: bool = True, maps: bool = True) -> Prepar
     if frames:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
-    baked, about_maps = baked_of(scene, surface, lamps) if maps else (None, ())
+    baked, about_maps = (
+        baked_of(scene, surface, lamps, has_probes=probes is not None) if maps else (None, ())
+    )
     check_counted_once(scene, probes, surface)
     notes = (*notes, *changed_since_bake(scene, probes, surface, ambient, lamps), *about_maps)
     glass = glass_of(scene, frames, surface, ambient, lamps, probes) if frames else None

@@ -29,7 +29,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
@@ -41,7 +41,7 @@ from andon.files.radiance_programs import package_folder
 from andon.files.radiance_types import COMPILED, FILES, LIGHTS, NUMBERS, TYPES
 from andon.files.reader import Reader
 
-__all__ = ["RADIANCE_READERS", "RadianceText", "read_radiance", "read_radiance_text"]
+__all__ = ["RADIANCE_READERS", "RadianceText", "read_included", "read_radiance"]
 
 # The buffers of Radiance's reader: of a line, and of a word; beyond them it splits what it reads.
 MAX_LINE, MAX_WORD = 2046, 127
@@ -101,14 +101,25 @@ def read_radiance(
     return RadianceText(scan.rewritten(), scan.files, tuple(scan.lights))
 
 
-def read_radiance_text(
-    path: str | Path, *, trust: bool = False, limits: Limits = DEFAULT_LIMITS
-) -> bytes:
-    """The text of a scene file that needs no other files; else as `read_radiance`."""
-    found = read_radiance(path, trust=trust, limits=limits)
-    if found.files:
-        raise InputError("must not name other files", file=path)
-    return found.text
+def read_included(
+    paths: Iterable[str | Path], *, trust: bool = False, limits: Limits = DEFAULT_LIMITS
+) -> dict[str, bytes]:
+    """What stands beside a scene's own things: name → contents; scene texts are those in ``.rad``.
+
+    Nothing of it may emit light, which would count again with each lamp. Other errors are those of
+    `read_radiance`.
+    """
+    found: dict[str, bytes] = {}
+    for number, path in enumerate(paths):
+        more = read_radiance(path, trust=trust, limits=limits)
+        if more.lights:
+            raise InputError(
+                f"must not emit light, {', '.join(more.lights)[:80]} does",
+                file=path,
+                remedy="make lamps of it: [[lamp]] in the scene file",
+            )
+        found |= more.files | {f"include{number}.rad": more.text}
+    return found
 
 
 class _Scan:
@@ -282,6 +293,8 @@ class _Scan:
         total = sum(map(len, self.files.values())) + len(contents)
         check_at_most(total, self.limits.max_file_bytes, "bytes in other files", self.path)
         tail = _PLAIN.sub("_", PurePosixPath(path.name).name)[-40:]
+        if tail.lower().endswith(".rad"):
+            tail += ".txt"  # read as what it is to the primitive that names it
         name = f"{hashlib.sha256(contents).hexdigest()[:16]}-{tail}"
         self.files[name] = contents
         return name

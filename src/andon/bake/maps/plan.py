@@ -11,7 +11,7 @@ from andon.bake.maps.world import BakedWorld
 from andon.engines.baked_light import part_of
 from andon.engines.prepared import prepare
 from andon.errors import InputError
-from andon.files.radiance_text import read_radiance_text
+from andon.files.radiance_text import read_included
 from andon.scene import Scene
 from andon.scene.ambient import Baked
 from andon.spaces import View
@@ -94,12 +94,10 @@ def planned(scene: Scene, /, *, trust: bool = False) -> Planned:
     """
     baked = _table(scene)
     folder = _folder(scene, baked)
-    include = {
-        f"include{number}.rad": read_radiance_text(
-            scene.path(name, f"baked.include[{number}]"), trust=trust
-        )
-        for number, name in enumerate(baked.include)
-    }
+    included = [
+        scene.path(name, f"baked.include[{number}]") for number, name in enumerate(baked.include)
+    ]
+    include = read_included(included, trust=trust)
     moments = moments_of(scene)
     stated = stated_views(scene, baked)
     prepared = prepare(scene, drawn=False, maps=False)
@@ -114,7 +112,7 @@ def planned(scene: Scene, /, *, trust: bool = False) -> Planned:
         _seen_share(scene, world, view, number, moments) for number, view in enumerate(views)
     )
     transports = {table.name: table.transport for table in scene.lamp}
-    parts = {name: _part(transports[name]) for name in baked.lamps}
+    parts: dict[str, Part] = {name: _part(transports[name]) for name in baked.lamps}
     quality = QUALITIES[baked.quality]
     plan = MapsPlan(folder, views, seen, coverage, moments, parts, quality, baked.bounces)
     return Planned(plan, world, include)

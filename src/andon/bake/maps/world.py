@@ -31,7 +31,7 @@ from andon.spaces import View
 from andon.surface import reference as surface
 from andon.surface.model import ObjectInfo, SurfaceModel
 from andon.surface.objects import joined
-from andon.transport.baked.radiance.materials import with_triangle_reflectance
+from andon.transport.baked.radiance.painted import with_triangle_reflectance
 
 __all__ = ["MOST_REFLECTANCE", "BakedWorld"]
 

@@ -46,7 +46,7 @@ def test_flux_is_kept(lamp, most):
     (flux, place, way), (few_flux, few_place, few_way) = sums(every), sums(few)
     assert np.allclose(few_flux, flux, rtol=1e-9)
     size = max(np.ptp(np.concatenate([p.corners.reshape(-1, 3) for p in every]), axis=0))
-    assert np.linalg.norm(few_place - place) < 0.1 * size
+    assert np.linalg.norm(few_place - place) < 0.9 * size / most
     assert np.linalg.norm(few_way - way) < 0.25
 
 

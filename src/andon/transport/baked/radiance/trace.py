@@ -2,9 +2,14 @@
 
 ::
 
-    folder/scene.oct, points ──rtrace -I──▶ W/m² per channel ──× 179──▶ lux
+    all points ──scene.oct, -ab 0──────────────────────▶ straight from lamps ──┐
+                                                                               + ──▶ lux
+    some points ──bounce.oct, -ab N less -ab 0──▶ reflected ──smoothed to all──┘
 
-The program runs in the folder, so that the scene's files have names without a path.
+W/m² of each channel times 179 are lux. The program runs in the folder, so that the scene's files
+have names without a path. One process computes in one order, and random numbers begin alike; what
+else runs on the machine does not matter. Which points are asked together does: they are each
+other's neighbours.
 """
 
 from __future__ import annotations
@@ -18,7 +23,8 @@ from numpy.typing import NDArray
 from andon.errors import InputError, MachineError
 from andon.files.radiance_programs import run_radiance
 from andon.transport.baked.model import Part
-from andon.transport.baked.radiance.quality import Quality
+from andon.transport.baked.radiance.quality import FEW_POINTS, Quality
+from andon.transport.baked.radiance.smoothing import chosen_points, smoothed
 
 __all__ = ["traced_illuminance", "traced_luminance"]
 
@@ -50,12 +56,13 @@ def traced_illuminance(
 
     Parameters
     ----------
-    folder : with the octree ``scene.oct`` and the files that it names.
-    position, normal : finite; normals of any length but 0. Light is measured 0.1 mm above.
+    folder : with the octrees ``scene.oct`` and ``bounce.oct``, and the files that they name.
+    position, normal : finite; normals of any length but 0. Light is measured 0.1 mm above. From
+        1000 points on they are smoothed as parts of one picture.
     bounces : how often surfaces reflect the light, ≥ 0.
     part : "all", or "bounce": all less the light that comes straight from the lamp.
     direct_bounces : ``-ab`` at which the lamp's own light is complete: 0, but 1 of a sky of glow,
-        which rays of the hemisphere find.
+        which rays of the hemisphere find: the scene must have no other lamps then.
     time_limit_seconds : for each run of `rtrace`.
 
     Raises
@@ -65,19 +72,26 @@ def traced_illuminance(
     """
     places, facing = _triples(position, "position"), _directions(normal, "normal")
     _check(places, facing, "normal", bounces)
-    rays = np.concatenate([places, facing], axis=1)
+    rays, count = np.concatenate([places, facing], axis=1), quality.traced(len(places))
+    chosen = chosen_points(places, facing, count)
+    alone = count < FEW_POINTS
 
-    def ask(octree: str, most: int) -> Float:
-        words = ["-I", *FIXED, *quality.options(most)]
-        return _traced(folder, words, rays, time_limit_seconds, octree)
+    def ask(octree: str, asked: Float, most: int) -> Float:
+        words = ["-I", *FIXED, *quality.options(most, alone=alone)]
+        return _traced(folder, words, asked, time_limit_seconds, octree)
 
-    lux = np.zeros_like(places)
-    if bounces > 0:
-        reflected = ask(BOUNCES, bounces + direct_bounces) - ask(BOUNCES, direct_bounces)
-        lux = np.maximum(reflected, 0)
-    if part == "all":
-        lux = lux + ask(OCTREE, direct_bounces)
-    return lux.astype(np.float32)
+    # What lamps give by themselves, if `rtrace` finds them everywhere without chance.
+    has_exact = part == "all" and not direct_bounces
+    result = ask(OCTREE, rays, 0) if has_exact else np.zeros_like(places)
+    if bounces or (direct_bounces and part == "all"):
+        found = ask(BOUNCES, rays[chosen], bounces + direct_bounces)
+        if part == "bounce" or not direct_bounces:
+            found -= ask(BOUNCES, rays[chosen], direct_bounces)
+        found = np.maximum(found, 0)  # a difference's rounding
+        if not alone:
+            found = smoothed(places, facing, chosen, found, neighbours=quality.neighbours)
+        result = result + found
+    return result.astype(np.float32)
 
 
 def traced_luminance(
@@ -97,7 +111,7 @@ def traced_luminance(
     places, looking = _triples(origins, "origins"), _directions(directions, "directions")
     _check(places, looking, "directions", bounces)
     rays = np.concatenate([places, looking], axis=1)
-    words = [*FIXED, *quality.options(bounces)]
+    words = [*FIXED, *quality.options(bounces, alone=True)]
     return _traced(folder, words, rays, time_limit_seconds, OCTREE).astype(np.float32)
 
 

@@ -69,8 +69,8 @@ class Frame:
         assert not got[shown][~known].any()
         both = known & covered
         assert both.mean() > 0.3
-        # Where the ball turns away from the lamp a dark texel lies beside a bright one: what float32
-        # leaves of a place between them, 1e-5 texels, is a large share of little light.
+        # Where the ball turns away from the lamp a dark texel lies beside a bright one: float32
+        # knows the place between them to 1e-5 texels, which is a large share of little light.
         assert_agree(got[shown][both, :3], lux[both], rtol=1e-3, atol=1e-5 * lux.max())
 
 

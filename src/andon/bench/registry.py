@@ -78,6 +78,7 @@ def rows() -> tuple[BenchRow, ...]:
     """All rows, stage by stage."""
     from andon.bench import (
         areas,
+        baked,
         glare,
         glare_frame,
         glare_needles,
@@ -93,4 +94,4 @@ def rows() -> tuple[BenchRow, ...]:
     light = relight.ROWS + areas.ROWS + glow.ROWS
     rest = glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS
     veils = glare.ROWS + glare_frame.ROWS + glare_needles.ROWS + glare_quads.ROWS
-    return light + rest + veils
+    return light + baked.ROWS + rest + veils

@@ -67,9 +67,8 @@ def area_points(geometry: Geometry, samples: int, seed: int = 0, /) -> tuple[Flo
     chosen: NDArray[Any] = np.searchsorted(np.cumsum(doubled), at, side="right")
     chosen = np.minimum(chosen, np.flatnonzero(doubled > 0)[-1])
     # Uniform in a triangle: fold the unit square over its diagonal.
-    u, v = generator.uniform(size=(2, samples))
-    folded = u + v > 1
-    u, v = np.where(folded, 1 - u, u), np.where(folded, 1 - v, v)
-    first, second, third = np.moveaxis(corners[chosen], 1, 0)
-    position = first + u[:, None] * (second - first) + v[:, None] * (third - first)
+    parts = generator.uniform(size=(samples, 2))
+    parts = np.where(parts.sum(axis=1, keepdims=True) > 1, 1 - parts, parts)
+    weights = np.column_stack([1 - parts.sum(axis=1), parts])
+    position: Float = np.einsum("nk,nkc->nc", weights, corners[chosen])
     return position, across[chosen] / doubled[chosen, None]

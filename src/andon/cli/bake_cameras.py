@@ -68,15 +68,20 @@ def _suggested(scene: Scene) -> tuple[Geometry, Suggested]:
     if scene.baked.camera:
         note("the scene states [[baked.camera]]: these are those that would be found without")
     geometry = scene_geometry(scene)
-    suggested = suggested_views(
-        geometry,
-        _frame_views(scene),
-        coverage=scene.baked.coverage,
-        most_cameras=scene.baked.most_cameras,
-        map_size_px=scene.baked.map_size_px,
-        seed=scene.scene.seed,
-        one_sided=scene.surface is not None and scene.surface.mesh is None,
-    )
+    try:
+        suggested = suggested_views(
+            geometry,
+            _frame_views(scene),
+            coverage=scene.baked.coverage,
+            most_cameras=scene.baked.most_cameras,
+            map_size_px=scene.baked.map_size_px,
+            seed=scene.scene.seed,
+            one_sided=scene.surface is not None and scene.surface.mesh is None,
+        )
+    except InputError as error:
+        raise InputError(
+            error.rule, file=scene.file, field=error.field, remedy=error.remedy
+        ) from error
     return geometry, suggested
 
 

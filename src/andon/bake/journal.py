@@ -65,6 +65,10 @@ class Journal:
         self.found += 1
         return result
 
+    def has(self, key: str, /) -> bool:
+        """Whether there is a file named `key`; `get` says whether it is whole."""
+        return self.folder is not None and self._path(key).exists()
+
     def _refused(self) -> None:
         self.damaged += 1
 

@@ -12,88 +12,47 @@ runs on any machine, and the same files give the same bytes.
 
 from __future__ import annotations
 
-import io
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import replace
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.bake.journal import Result
+from andon.bake.radiance_points import VERSION, WORK, gathered, points_bundle, programs
 from andon.bake.runner import Runner
 from andon.bake.task import Look
-from andon.bake.tasks.model import bundle_digest
-from andon.engines.cubes_radiance import EMITTED, LAMPS, SeenPoints, light_scenes, seen_points
+from andon.bake.tasks import (
+    Store,
+    Task,
+    TasksProgress,
+    Workers,
+    bundle_digest,
+    run_tasks,
+)
+from andon.engines.cubes_radiance import SeenPoints, light_scenes, seen_points
 from andon.engines.digest import digest
 from andon.harmonics import cube_directions
 from andon.scene.probes import Probes
-from andon.transport.baked.radiance.quality import QUALITIES, Quality
-from andon.transport.baked.radiance.trace import traced_illuminance
+from andon.transport.baked.radiance.quality import QUALITIES
 from andon.transport.probes.capture import Seen, captured
 from andon.transport.probes.placement import Placed
 
-__all__ = ["RadianceBounces", "bounce_notes", "gathered", "traced_light", "traced_points"]
+__all__ = ["RadianceBounces", "bounce_notes", "forget", "traced_light"]
 
 Float = NDArray[np.float64]
 
-# Of what is computed here: results of another version are computed again.
-VERSION = 1
-POINTS = "points.npy"
-# What a worker calls.
-WORK = "andon.bake.radiance_bounces:traced_points"
-
-
-def gathered(
-    folders: Mapping[str, Path],
-    position: Float,
-    normal: Float,
-    /,
-    *,
-    quality: Quality,
-    bounces: int,
-) -> Float:
-    """(n, 3) lux at points after at least one reflection, and of what emits.
-
-    `folders` are those of `light_scenes`; light that leaves the points again has been reflected at
-    most `bounces` times then. Raises `MachineError` as `traced_illuminance` does.
-    """
-    total = np.zeros((len(position), 3))
-    if LAMPS in folders:
-        total += traced_illuminance(
-            folders[LAMPS], position, normal, quality=quality, bounces=bounces - 1, part="bounce"
-        )
-    if EMITTED in folders:
-        # What emits is met by rays of the hemisphere: one more of Radiance's bounces finds it.
-        total += traced_illuminance(
-            folders[EMITTED], position, normal, quality=quality, bounces=bounces - 1,
-            direct_bounces=1,
-        )  # fmt: skip
-    return total
-
-
-def traced_points(inputs: Mapping[str, Path], settings: Mapping[str, Any], /) -> bytes:
-    """A `Work`: the lux (n, 3) of `gathered` as .npy.
-
-    `inputs` has the folder ``points`` with ``points.npy``, (n, 6) float64 positions and normals,
-    beside those of `light_scenes`; `settings` the names ``quality`` and ``bounces``.
-    """
-    points = np.load(inputs["points"] / POINTS, allow_pickle=False)
-    folders = {name: path for name, path in inputs.items() if name in (LAMPS, EMITTED)}
-    lux = gathered(
-        folders,
-        points[:, :3],
-        points[:, 3:],
-        quality=QUALITIES[settings["quality"]],
-        bounces=int(settings["bounces"]),
-    )
-    stream = io.BytesIO()
-    np.lib.format.write_array(stream, lux, allow_pickle=False)
-    return stream.getvalue()
+# What of it people are told.
+WHAT = "bounces by Radiance"
+# The folder of what workers have traced, beside the results, and how its files end.
+TRACED, SUFFIX = "traced", ".npy"
+# Probes whose points are in memory at once, 0.3 MB each, when workers trace.
+CHUNK = 256
 
 
 class RadianceBounces:
@@ -114,11 +73,10 @@ class RadianceBounces:
         self.quality, self.bounces = QUALITIES[quality], bounces
         self.scenes = light_scenes(small.setting, bounces)
         sums = {name: bundle_digest(files) for name, files in self.scenes.items()}
-        self.name = digest(
-            "radiance", VERSION, _programs(), self.quality, bounces, small.size, sums
-        )
+        self.name = digest("radiance", VERSION, programs(), self.quality, bounces, small.size, sums)
         self._temporary: TemporaryDirectory[str] | None = None
         self._folders: dict[str, Path] = {}
+        self._traced: dict[int, Path] = {}
 
     def __enter__(self) -> Self:
         self._temporary = TemporaryDirectory(prefix="andon-probes-")
@@ -141,16 +99,58 @@ class RadianceBounces:
             self._temporary = None
             self._folders = {}
 
+    def trace(
+        self, indices: Sequence[int], folder: Path, workers: Workers, done: Callable[[], None], /
+    ) -> None:
+        """Has `workers` trace the light of probes, which `reflected` finds then.
+
+        It is kept in `folder` until somebody removes it; what is there is not traced again.
+        `done` is called after each probe. Raises `MachineError` as `run_tasks` does.
+        """
+        scenes = {bundle_digest(files): files for files in self.scenes.values()}
+        store = Store(folder, SUFFIX)
+        for first in range(0, len(indices), CHUNK):
+            bundles, tasks = dict(scenes), dict[int, Task]()
+            for index in indices[first : first + CHUNK]:
+                points = points_bundle(self._points(index)[1])
+                bundles[bundle_digest(points)] = points
+                tasks[index] = self._task(index, bundle_digest(points))
+            count = 0
+
+            def tell(state: TasksProgress) -> None:
+                nonlocal count
+                for _ in range(state.done - count):
+                    done()
+                count = state.done
+
+            run_tasks(list(tasks.values()), bundles, store, workers=workers, progress=tell)
+            for index, task in tasks.items():
+                if (path := store.get(task.key)) is not None:
+                    self._traced[index] = path
+
+    def _task(self, index: int, points: str) -> Task:
+        sums = {name: bundle_digest(files) for name, files in self.scenes.items()}
+        return Task(
+            f"probe {self.placed.names[index]}",
+            WORK,
+            {"points": points} | sums,
+            {"quality": self.quality.name, "bounces": self.bounces, "programs": programs()},
+            VERSION,
+        )
+
     def reflected(self, index: int, /) -> Result:
         """What surfaces around a probe reflect of light that was reflected, or emitted, (k, 3)."""
         seen, points = self._points(index)
-        lux = gathered(
-            self._folders,
-            points.position,
-            points.normal,
-            quality=self.quality,
-            bounces=self.bounces,
-        )
+        if index in self._traced:
+            lux = np.load(self._traced[index], allow_pickle=False)
+        else:
+            lux = gathered(
+                self._folders,
+                points.position,
+                points.normal,
+                quality=self.quality,
+                bounces=self.bounces,
+            )
         return self._result(index, seen, points.spread(lux))
 
     def _points(self, index: int) -> tuple[Seen, SeenPoints]:
@@ -177,19 +177,50 @@ def traced_light(
     own: Sequence[int],
     key: Callable[[int], str],
     /,
+    workers: Workers | None = None,
 ) -> Float:
     """(m, k, 3) what surfaces reflect around the probes `own` (m,), each kept under its `key`.
 
-    Raises `InputError` as `RadianceBounces` does, `MachineError` as `Runner.each` does.
+    `workers` do the tracing; None: this process, one probe after the other. The light is the same.
+    Raises `InputError` as `RadianceBounces` does, `MachineError` as `Runner.each` and `run_tasks`
+    do.
     """
+
+    def kept_as(index: int) -> str:
+        return digest(traced.name, key(index))
+
     with RadianceBounces(small, placed, probes.bounces_quality, probes.bounces) as traced:
-        results = runner.each(
-            "bounces by Radiance",
-            own,
-            lambda index: digest(traced.name, key(index)),
-            traced.reflected,
-        )
+        if workers is not None:
+            with _beside(runner.journal.folder) as folder:
+                lost = [index for index in own if not runner.journal.has(kept_as(index))]
+                runner.advance(len(own) - len(lost), WHAT)
+                traced.trace(lost, folder, workers, lambda: runner.advance(1, WHAT))
+                results = runner.each(WHAT, own, kept_as, traced.reflected)
+            forget(runner.journal.folder)
+        else:
+            results = runner.each(WHAT, own, kept_as, traced.reflected)
     return np.stack([result["reflected"] for result in results])
+
+
+@contextmanager
+def _beside(folder: Path | None, /) -> Generator[Path]:
+    """Where traced light waits: beside the results in `folder`, or nowhere that lasts."""
+    if folder is not None:
+        yield folder / TRACED
+        return
+    with TemporaryDirectory(prefix="andon-traced-") as name:
+        yield Path(name)
+
+
+def forget(folder: Path | None, /) -> None:
+    """Throws away what workers have traced for the results in `folder`."""
+    if folder is None or not (folder / TRACED).is_dir():
+        return
+    store = Store(folder / TRACED, SUFFIX)
+    with store.locked():
+        store.clear()
+    with suppress(OSError):  # gone already, or somebody's files are in it
+        (folder / TRACED).rmdir()
 
 
 def bounce_notes(probes: Probes, /) -> dict[str, str]:
@@ -197,11 +228,3 @@ def bounce_notes(probes: Probes, /) -> dict[str, str]:
     if probes.bounces_by == "probes":
         return {}
     return {"bounces_by": probes.bounces_by, "bounces_quality": probes.bounces_quality}
-
-
-def _programs() -> str:
-    """The version of the wheel that Radiance comes with: another one may compute otherwise."""
-    try:
-        return version("pyradiance")
-    except PackageNotFoundError:
-        return "none"

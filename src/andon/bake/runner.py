@@ -69,6 +69,12 @@ class Runner:
             self._refuse(failed, len(indices))
         return results
 
+    def advance(self, count: int, what: str, /) -> None:
+        """Counts work that others have done."""
+        self._done += count
+        if self._progress is not None and count:
+            self._progress(self._done, self.total, what)
+
     def _tried(self, index: int, work: Callable[[int], Result]) -> Result | Exception:
         """What `work` gives; the last exception where it fails each time."""
         fault: Exception = MachineError("was not tried")

@@ -11,7 +11,7 @@ from typing import Any
 import typer
 from typer.core import TyperCommand
 
-from andon.cli import bake, bake_show, bake_status
+from andon.cli import bake, bake_cameras, bake_show, bake_status
 from andon.cli.default_command import DefaultCommand
 
 __all__ = ["MAPS", "bake_app"]
@@ -40,8 +40,8 @@ bake_app = typer.Typer(cls=_SceneFirst, subcommand_metavar="{SCENE | COMMAND [AR
 def _bake(context: typer.Context) -> None:
     """Bake global illumination: what lamps give to a room, reflections included, by Radiance.
 
-    `andon bake SCENE` makes the illuminance maps of the scene's [baked] table, or goes on with them;
-    its options (workers, cluster, quality) are those of `andon bake maps --help`.
+    `andon bake SCENE` makes the illuminance maps of the scene's [baked] table, or goes on with
+    them; its options (workers, cluster, quality) are those of `andon bake maps --help`.
 
     Examples:
 
@@ -58,4 +58,5 @@ def _bake(context: typer.Context) -> None:
 # In the order of ``andon bake --help``.
 bake_app.command(MAPS, cls=_WithQualities)(bake.maps)
 bake_app.command("status")(bake_status.status)
+bake_app.command("cameras")(bake_cameras.cameras)
 bake_app.command("show")(bake_show.show)

@@ -12,6 +12,7 @@ from andon.bake.maps.report import BakedMapsReport
 from andon.bake.tasks import LocalWorkers, Store, TasksProgress, Workers, run_tasks
 from andon.bake.tasks.model import Task
 from andon.engines.baked_light import map_facts
+from andon.errors import InputError
 from andon.files.atomic import write_bytes
 from andon.files.illuminance_maps import (
     MANIFEST,
@@ -69,7 +70,7 @@ def bake_maps(
         if fresh:
             (store.folder / MANIFEST).unlink(missing_ok=True)
             store.clear()
-        jobs = jobs_of(plan, scene.photometry, progress=_preparing(progress))
+        jobs = _jobs(scene, plan, progress)
         done = run_tasks(
             jobs.tasks,
             jobs.bundles,
@@ -96,6 +97,17 @@ def bake_maps(
         workers=done.workers,
         disk_bytes=sum(files.values()),
     )
+
+
+def _jobs(scene: Scene, plan: Planned, progress: Progress | None) -> Jobs:
+    try:
+        return jobs_of(plan, scene.photometry, progress=_preparing(progress))
+    except InputError as error:
+        if error.file is not None:
+            raise
+        raise InputError(
+            error.rule, file=scene.file, field=error.field, remedy=error.remedy
+        ) from error
 
 
 def _check_folder(folder: Path) -> None:

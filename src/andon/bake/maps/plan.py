@@ -11,6 +11,7 @@ from andon.bake.maps.world import BakedWorld
 from andon.engines.baked_light import part_of
 from andon.engines.prepared import prepare
 from andon.errors import InputError
+from andon.files.radiance_text import read_included
 from andon.scene import Scene
 from andon.scene.ambient import Baked
 from andon.spaces import View
@@ -93,7 +94,10 @@ def planned(scene: Scene, /, *, trust: bool = False) -> Planned:
     """
     baked = _table(scene)
     folder = _folder(scene, baked)
-    include = _included(scene, baked, trust=trust)
+    included = [
+        scene.path(name, f"baked.include[{number}]") for number, name in enumerate(baked.include)
+    ]
+    include = read_included(included, trust=trust)
     moments = moments_of(scene)
     stated = stated_views(scene, baked)
     prepared = prepare(scene, drawn=False, maps=False)
@@ -108,7 +112,7 @@ def planned(scene: Scene, /, *, trust: bool = False) -> Planned:
         _seen_share(scene, world, view, number, moments) for number, view in enumerate(views)
     )
     transports = {table.name: table.transport for table in scene.lamp}
-    parts = {name: _part(transports[name]) for name in baked.lamps}
+    parts: dict[str, Part] = {name: _part(transports[name]) for name in baked.lamps}
     quality = QUALITIES[baked.quality]
     plan = MapsPlan(folder, views, seen, coverage, moments, parts, quality, baked.bounces)
     return Planned(plan, world, include)
@@ -141,18 +145,6 @@ def _table(scene: Scene) -> Baked:
                 f"names {name!r} twice", file=scene.file, field=f"baked.lamps[{index}]"
             )
     return scene.baked
-
-
-def _included(scene: Scene, baked: Baked, *, trust: bool) -> dict[str, bytes]:
-    """The Radiance files of [baked], by names that do not depend on where they lie."""
-    if not baked.include:
-        return {}
-    from andon.files.radiance_text import read_included
-
-    paths = [
-        scene.path(name, f"baked.include[{number}]") for number, name in enumerate(baked.include)
-    ]
-    return read_included(paths, trust=trust)
 
 
 def _folder(scene: Scene, baked: Baked) -> Path:

@@ -56,7 +56,9 @@ def view_settings(view: View, /) -> dict[str, Any]:
 
 
 def _view(settings: Mapping[str, Any]) -> View:
-    return View(**(dict(settings) | {"world_from_camera": np.array(settings["world_from_camera"])}))
+    table: dict[str, Any] = dict(settings)
+    table["world_from_camera"] = np.array(table["world_from_camera"])
+    return View(**table)
 
 
 def geometry(inputs: Mapping[str, Path], settings: Mapping[str, Any], /) -> bytes:

@@ -31,6 +31,7 @@ from andon.spaces import View
 from andon.surface import reference as surface
 from andon.surface.model import ObjectInfo, SurfaceModel
 from andon.surface.objects import joined
+from andon.transport.baked.radiance.painted import with_triangle_reflectance
 
 __all__ = ["MOST_REFLECTANCE", "BakedWorld"]
 
@@ -129,8 +130,6 @@ class BakedWorld:
         real = self.prepared.surface.real
         if not len(real.triangles) or not self.prepared.frames or states_reflectance(real):
             return real
-        from andon.transport.baked.radiance.materials import with_triangle_reflectance
-
         middles = real.positions[real.triangles].mean(axis=1)
         shown = photograph_of(self.prepared).at(middles).reflectance
         return with_triangle_reflectance(real, np.clip(shown, 0, MOST_REFLECTANCE))

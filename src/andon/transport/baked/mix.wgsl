@@ -1,9 +1,9 @@
-// The texels of a moment under the lamps' present shares: what baked.wgsl reads. Drawn when shares
+// The texels of a moment under the lamps' present shares: what lookup.wgsl reads. Drawn when shares
 // or moment change; lamps are kept apart, so that each may flicker by itself.
 
 //!import andon/transport/baked/settings.wgsl
 
-// x: offset, f32 bits; y: normal; z: trust, f32 bits
+// x, y as in lookup.wgsl; z: normal z in the low half
 @group(0) @binding(0) var baked_surface: texture_2d<u32>;
 // A layer each lamp.
 @group(0) @binding(1) var baked_lamps: texture_2d_array<f32>;
@@ -17,6 +17,6 @@
     lux += baked_shares[lamp >> 2][lamp & 3] * textureLoad(baked_lamps, at, lamp, 0).xyz;
   }
   let here = textureLoad(baked_surface, at, 0);
-  let last = pack2x16float(vec2f(lux.z, bitcast<f32>(here.z)));
-  return vec4u(here.xy, pack2x16float(lux.xy), last);
+  let red = pack2x16float(vec2f(0.0, lux.x));
+  return vec4u(here.xy, (here.z & 0xffffu) | (red & 0xffff0000u), pack2x16float(lux.yz));
 }

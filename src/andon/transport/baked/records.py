@@ -3,9 +3,9 @@
 ==================  =============  ================================================================
 page                bytes a texel  of
 ==================  =============  ================================================================
-surface             16             the tangent plane's offset from the camera, normal, trust
+surface             16             the tangent plane's offset from the camera, trust, normal
 lamps, a layer each 8              lux as half floats, in units of the lamp's largest
-mix                 16             offset, normal, lux of all lamps, trust: what a frame reads
+mix                 16             the same with the lux of all lamps: what a frame reads
 ==================  =============  ================================================================
 
 A texel's *plane* is kept rather than its depth: the distance of a point from it is one product,
@@ -22,12 +22,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.gpu.layout import HostStruct
-from andon.octahedra import directions_of, square_of
 from andon.spaces import View
 from andon.transport.baked.atlas import Atlas, Place
 from andon.transport.baked.model import IlluminanceMap, Mode
 from andon.transport.baked.texels import (
     BORDER_TEXELS,
+    EDGE_TEXELS,
     texels_of,
 )
 
@@ -39,6 +39,7 @@ __all__ = [
     "STORED_MOST",
     "STRUCTS",
     "Pages",
+    "moments_text",
     "pack_map",
     "pack_pages",
     "pack_shares",
@@ -47,11 +48,16 @@ __all__ = [
 
 # Maps of a moment; baked.wgsl has room for two moments.
 MAX_MAPS = 64
+# Of them, those that a shader is compiled for.
+MOST_NAMED = 8
 # Layers of a texture, and numbers in mix.wgsl.
 MAX_LAMPS = 256
 # The largest lux of a lamp is stored as this: below the largest half float, 2³¹ above the smallest
 # that has all its bits.
 STORED_MOST = 32768.0
+
+# Trust lies in the last bits of the offset, where they mean 2⁻¹⁹ of it: 5 μm at 2.5 m.
+TRUST_STEPS, TRUST_BITS = EDGE_TEXELS + 1, 15
 
 _KINDS = {"pinhole": 0, "fisheye": 1, "latlong": 2}
 
@@ -77,10 +83,6 @@ BAKED_MAP = HostStruct(
 BAKED_SETTINGS = HostStruct(
     "BakedSettings",
     (
-        ("map_count", "i32"),
-        ("moment_count", "i32"),
-        ("earlier_slot", "i32"),
-        ("later_slot", "i32"),
         ("earlier_scale", "f32"),  # lux per stored unit
         ("later_scale", "f32"),
         ("later_share", "f32"),
@@ -155,17 +157,16 @@ def _most(of_maps: Sequence[NDArray[Any] | None]) -> float:
 
 
 def _surface(seen: IlluminanceMap, tolerance_m: float) -> NDArray[np.uint32]:
-    """(h, w, 4): the plane through the texel that has the normal *as it is stored*."""
+    """(h, w, 4): the plane through the texel that has the normal *as it is stored*, and trust."""
     texels = texels_of(seen, tolerance_m)
-    normal = np.where(texels.valid[:, None], texels.normal, (0.0, 0.0, 1.0))
-    signed = np.rint(square_of(normal) * 32767).astype(np.int16)
-    stored = directions_of(signed / 32767)
-    packed = np.zeros((len(normal), 4), np.uint32)
-    offset = np.einsum("tc,tc->t", stored, texels.reach).astype(np.float32)
-    packed[:, 0] = offset.view(np.uint32)
-    halves = signed.view(np.uint16).astype(np.uint32)
-    packed[:, 1] = halves[:, 0] | (halves[:, 1] << np.uint32(16))
-    packed[:, 2] = np.where(texels.valid, texels.trust, 0.0).astype(np.float32).view(np.uint32)
+    signed = np.rint(texels.normal * 32767).astype(np.int16)
+    offset = np.einsum("tc,tc->t", signed / 32767, texels.reach).astype(np.float32)
+    trust = np.rint(texels.trust * TRUST_STEPS).astype(np.uint32)
+    x, y, z = signed.view(np.uint16).astype(np.uint32).T
+    packed = np.zeros((len(signed), 4), np.uint32)
+    packed[:, 0] = (offset.view(np.uint32) & ~np.uint32(TRUST_BITS)) | trust
+    packed[:, 1] = x | (y << np.uint32(16))
+    packed[:, 2] = z
     return packed.reshape(*seen.view.shape, 4)
 
 
@@ -187,3 +188,30 @@ def settings_text(views: Sequence[View], lamps: int, mode: Mode, /) -> str:
     flags["BAKED_FIRST_VALID"] = mode == "first_valid"
     lines = [f"const {name}: bool = {str(flag).lower()};" for name, flag in flags.items()]
     return "\n".join([*lines, f"const BAKED_LAMPS: i32 = {lamps};"])
+
+
+def moments_text(maps: int, moments: int, /) -> str:
+    """The module that stands in for moments.wgsl: the maps of the moments in use, one by one.
+
+    Maps are called by numbers that are known when a shader is compiled, the first `MOST_NAMED`: a
+    software rasteriser reads a camera whose number is a variable once for each pixel of a group,
+    which costs a quarter more; but 64 named ones take a minute to compile.
+    """
+    lines = ["//!import andon/transport/baked/lookup.wgsl"]
+    for moment, name in enumerate(("earlier", "later")):
+        first, count = moment * MAX_MAPS, maps if moment < moments else 0
+        named = [_call(f"{first + number}") for number in range(min(count, MOST_NAMED))]
+        lines += [
+            f"fn baked_{name}(position: vec3f, normal: vec3f) -> vec4f {{",
+            "  var total = vec4f(0.0);",
+            *named,
+        ]
+        if count > MOST_NAMED:
+            loop = f"var k = {first + MOST_NAMED}; k < {first + count}; k++"
+            lines += [f"  for ({loop}) {{", f"  {_call('k')}", "  }"]
+        lines += ["  return known_light(total);", "}"]
+    return "\n".join(lines)
+
+
+def _call(number: str) -> str:
+    return f"  total += map_light(baked_maps[{number}], position, normal, total.w);"

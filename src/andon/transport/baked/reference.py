@@ -137,7 +137,7 @@ def map_illuminance(
     trust = np.einsum("nk,nk->n", valid, texels.trust[index])
     density = np.minimum(facing[looked] * texel_density(seen.view, position[looked]), MOST_DENSITY)
     lux[looked] = np.einsum("nk,nkc->nc", valid, _mixed(seen, shares)[index])
-    feathered = border[looked] * trust * share + LEAST_WEIGHT
+    feathered = border[looked] * trust**2 * share + LEAST_WEIGHT
     weight[looked] = np.where(share > 0, density**2 * feathered, 0.0)
     return lux, weight
 
@@ -152,7 +152,7 @@ def _agreement(
     cosine = np.einsum("nkc,nc->nk", theirs, normal)
     alike = np.clip((cosine - low) / (high - low), 0, 1)
     near = texels.valid[index] & (np.abs(off_plane) < depth_tolerance_m)
-    return np.where(near, alike * alike * (3 - 2 * alike), 0.0)
+    return np.where(near, alike, 0.0)
 
 
 def _mixed(seen: IlluminanceMap, shares: Mapping[str, float]) -> Float:

@@ -24,7 +24,7 @@ __all__ = [
 
 Float = NDArray[np.float64]
 
-# Two normals 60° apart are two surfaces, up to 30° apart one; smooth between.
+# Cosines: two normals 60° apart are two surfaces, up to 30° apart one; linear between.
 NORMAL_COSINES = (0.5, 0.8660254037844387)
 # A map that sees less than this share of the texels around a point does not see the point.
 VALID_LEAST = 1e-3
@@ -47,7 +47,8 @@ class Texels:
     valid : (t,) there is a surface, and its light is known.
     normal : (t, 3) unit, world; 0 where not valid.
     reach : (t, 3) m, world axes, from the map's camera to the surface; 0 where not valid.
-    trust : (t,) 0…1, rising from the edges of what the map sees inwards.
+    trust : (t,) 0…1 in steps of 1/9, rising from the edges of what the map sees inwards; 0 where
+        not valid.
     """
 
     valid: NDArray[np.bool_]
@@ -67,7 +68,7 @@ def texels_of(seen: IlluminanceMap, depth_tolerance_m: float, /) -> Texels:
     reach = reach * np.where(known, seen.depth_m, 0.0)[..., None]
     normal = np.where(known[..., None], seen.normal, 0.0).astype(np.float64)
     edges = _edges(known, normal, reach, view.projection == "latlong", depth_tolerance_m)
-    trust = _inwards(edges, view.projection == "latlong")
+    trust = np.where(known, _inwards(edges, view.projection == "latlong"), 0.0)
     return Texels(known.ravel(), normal.reshape(-1, 3), reach.reshape(-1, 3), trust.ravel())
 
 
@@ -94,7 +95,7 @@ def _edges(
 
 
 def _inwards(edges: NDArray[np.bool_], goes_round: bool) -> Float:
-    """(h, w) 0…1: smoothly from edges inwards, by distance along rows and columns."""
+    """(h, w) 1/9 at edges, rising inwards to 1, by distance along rows and columns."""
     steps = np.where(edges, 0.0, float(EDGE_TEXELS))
     for _ in range(EDGE_TEXELS - 1):
         padded = np.pad(steps, 1, mode="edge")
@@ -107,5 +108,4 @@ def _inwards(edges: NDArray[np.bool_], goes_round: bool) -> Float:
             padded[1:-1, :-2],
         ]
         steps = np.minimum(steps, np.min(around, axis=0) + 1)
-    part = (steps + 0.5) / (EDGE_TEXELS + 0.5)
-    return part * part * (3 - 2 * part)
+    return (steps + 1) / (EDGE_TEXELS + 1)

@@ -5,20 +5,21 @@ What
     `plan_picture` shows people what was found, and what no camera sees.
 Why so
     The frame's own cameras come first: what they show is sampled best by maps from the same
-    place. The rest is a set cover: hundreds of places in free space, 26 directions each, and the
-    one that adds most is taken until the stated share is seen.
+    place. The rest is a set cover: of hundreds of places in free space, looked around from, the one
+    that adds most is taken until the stated share is seen.
 
 =========  ====================================================================================
 module     does
 =========  ====================================================================================
 samples    points of the surface that stand for equal areas, each with two sides
 space      places in free space
-sight      which sides a place sees, and how long texels are there
-greedy     what each place sees in each direction; the best of them
+sight      which sides an eye sees, and how long texels are there
+greedy     the place that adds most
 frames     maps from the frame's cameras
 choose     takes cameras until enough is seen
 suggest    all of it
 check      a camera that sees nothing
+plan       a picture of it
 =========  ====================================================================================
 
 Terms
@@ -30,6 +31,7 @@ Terms
 
 from andon.transport.baked.placement.check import check_view_sees
 from andon.transport.baked.placement.model import Ended, Suggested
+from andon.transport.baked.placement.plan import plan_picture
 from andon.transport.baked.placement.suggest import suggested_views
 
-__all__ = ["Ended", "Suggested", "check_view_sees", "suggested_views"]
+__all__ = ["Ended", "Suggested", "check_view_sees", "plan_picture", "suggested_views"]

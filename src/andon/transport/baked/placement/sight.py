@@ -1,8 +1,8 @@
 """Which sides of the surface an eye sees, and how large a texel of its picture is there.
 
-A texel of a picture with focal length f that shows a point at planar depth z under the angle θ
-off its normal is at most z/(f·cos θ) long on the surface (towards the picture's borders it is
-shorter in the radial direction). What is seen *well* has no longer texels than a limit.
+A texel that takes the angle α is at most d·α/cos θ long on a surface at the distance d that is
+seen under the angle θ off its normal; of a pinhole with focal length f, at most z/(f·cos θ) at the
+planar depth z. What is seen *well* has no longer texels than a limit.
 """
 
 from __future__ import annotations
@@ -72,7 +72,8 @@ def in_picture(view: View, points: Float, /) -> Bool:
         return np.ones(len(points), bool)
     last = np.array([view.width - 1, view.height - 1], float)
     with np.errstate(invalid="ignore"):
-        return ((pixels >= BORDER_PX) & (pixels <= last - BORDER_PX)).all(axis=1)
+        x, y = ((pixels >= BORDER_PX) & (pixels <= last - BORDER_PX)).T
+    return x & y
 
 
 def texels_m(view: View, points: Float, cosine: Float, /) -> Float:
@@ -82,8 +83,12 @@ def texels_m(view: View, points: Float, cosine: Float, /) -> Float:
         along = np.maximum(local[:, 2], 0) / min(view.fx, view.fy)
     else:
         along = np.sqrt((local * local).sum(axis=1))
-        angle = 1 / min(view.fx, view.fy)
-        if view.projection == "latlong":
-            angle = max(2 * np.pi / view.width, np.pi / view.height)
-        along = along * angle
+        along = along * _texel_angle(view)
     return along / np.maximum(cosine, EDGE_ON)
+
+
+def _texel_angle(view: View) -> float:
+    """Radians that a texel of a fisheye or latlong takes at most."""
+    if view.projection == "latlong":
+        return max(2 * np.pi / view.width, np.pi / view.height)
+    return 1 / min(view.fx, view.fy)

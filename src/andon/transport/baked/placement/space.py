@@ -2,12 +2,13 @@
 
 A place is free where no surface is near, where it is not inside a wall or a closed thing, and
 where there is a way of straight lines from the frame's own cameras through other free places: what
-lies outside of the room is not. Files without a frame have no such start; then the places that see
-most of each other are taken whose sky is smallest.
+lies outside of the room is not.
 
-Whether triangles show their fronts or backs tells the inside of closed things, in files that wind
-them with care. If the frame's own camera sees mostly backs, the file does not, and the way from
-the camera alone decides.
+Rooms are rarely tight, and walls are often sheets: through a gap the way leads behind them. Who
+stands there sees backs and sky, more of both than the frame's camera. A street has sky everywhere,
+and a file that winds its triangles carelessly shows backs to the frame's camera, too: only what is
+more than there tells. Without a frame the median of all places stands for its camera, and the
+parts of space are taken that see little sky.
 """
 
 from __future__ import annotations
@@ -33,6 +34,9 @@ MOST_PLACES = 400
 CLEARANCE = 0.2
 # In front of a surface that has one side only, some backs are seen through its gaps.
 BACKS_IN_FRONT = 0.05
+# Outside is what sees backs and sky in more than this share of the directions, and in so much more
+# than the frame's cameras.
+MISSING, MORE_MISSING = 0.4, 0.2
 # Space that sees more sky than this on average is outside of what has an inside.
 MOST_SKY = 0.4
 
@@ -59,21 +63,35 @@ def free_places(
     near = nearest_within(places, geometry, CLEARANCE * spacing)
     places = places[~np.isfinite(near.distance_m)]
     sight = walls.sight(places)
+    missing = sight.backs + _sky(walls, places)
     if one_sided:
-        places = places[sight.backs <= BACKS_IN_FRONT]
-    elif len(starts) == 0 or not walls.sight(starts).buried.any():
-        places = places[~sight.buried]
+        free = sight.backs <= BACKS_IN_FRONT
+    else:
+        free = missing <= _most_missing(walls, starts, missing)
+        if len(starts) == 0 or not walls.sight(starts).buried.any():
+            free &= ~sight.buried
+    places = places[free]
     inside = _connected(walls, starts, places) if len(starts) else _most_enclosed(walls, places)
     return places[inside][:MOST_PLACES]
+
+
+def _most_missing(walls: Walls, starts: Float, missing: Float) -> float:
+    """Share of directions without fronts that a place inside of the scene may have."""
+    if len(starts):
+        usual = float((walls.sight(starts).backs + _sky(walls, starts)).max())
+    else:
+        usual = float(np.median(missing)) if len(missing) else 0.0
+    return max(MISSING, usual + MORE_MISSING)
 
 
 def _jittered(geometry: Geometry, spacing: float, seed: int) -> Float:
     """A place anywhere in each box of a grid, shuffled, in round numbers."""
     corners = geometry.positions[geometry.triangles.ravel()]
-    low, size = corners.min(axis=0), np.ptp(corners, axis=0)
+    low: Float = corners.min(axis=0)
+    size: Float = corners.max(axis=0) - low
     # A flat scene has space before it.
-    thin = size < spacing
-    low, size = np.where(thin, low - size.max() / 4, low), np.where(thin, size.max() / 2, size)
+    thin, most = size < spacing, float(size.max())
+    low, size = np.where(thin, low - most / 4, low), np.where(thin, most / 2, size)
     counts = np.maximum(np.round(size / spacing), 1).astype(np.int64)
     random = np.random.default_rng([seed, 1])
     index = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, 3)

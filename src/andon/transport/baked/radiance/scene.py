@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 __all__ = ["OCTREE", "radiance_bundle"]
 
 SCENE, OCTREE = "scene.rad", "scene.oct"
-# Tiles of an area lamp. Among those of the furnished room 256 are within 0.3 % of 1024.
-TILES = 256
+# Tiles of an area lamp: unshadowed light is then off by 0.02 % (rectangle) to 0.4 % (ball) median,
+# 0.06 to 1.1 % at the 95th percentile a metre or two away, and a penumbra has so many steps.
+TILES = 64
 LIMIT_SECONDS = 600.0
 
 

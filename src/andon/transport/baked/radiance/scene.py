@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
 
-from andon.bake.tasks.model import Bundle
 from andon.files.radiance_programs import run_radiance
 from andon.lamps import Body, Lamp, PointLamp
 from andon.quantities import Geometry
@@ -16,6 +16,9 @@ from andon.transport.baked.radiance.luminaires import POINT_CAL, POINT_FILE
 from andon.transport.baked.radiance.materials import MIX_CAL, MIX_FILE
 from andon.transport.baked.radiance.surfaces import surfaces_of, without_near
 from andon.transport.baked.radiance.textures import TEXTURE_CAL, TEXTURE_FILE
+
+if TYPE_CHECKING:
+    from andon.bake.tasks.model import Bundle
 
 __all__ = ["BOUNCE_OCTREE", "OCTREE", "radiance_bundle"]
 

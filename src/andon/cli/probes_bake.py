@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from andon.cli.bar import Bar
 from andon.cli.console import Interrupted, note
 from andon.cli.options import EngineOption
 from andon.errors import InputError
@@ -73,7 +74,7 @@ def bake(
 
     loaded = _bounced_by(_in_state(load_scene(scene), state), bounces_by)
     try:
-        with _Bar() as bar:
+        with Bar("placing") as bar:
             written = bake_file(
                 loaded,
                 engine=engine,
@@ -132,27 +133,6 @@ def _workers(count: int | None, scheduler: str | None) -> Workers | None:
     if scheduler is not None:
         return DaskWorkers(scheduler)
     return None if count is None else LocalWorkers(count)
-
-
-class _Bar:
-    """A progress bar on stderr, with the time left."""
-
-    def __enter__(self) -> _Bar:
-        from rich.console import Console
-        from rich.progress import Progress
-
-        console = Console(stderr=True)
-        # Where nobody looks at it, all that is left of a bar is an empty line.
-        self._bar = Progress(console=console, transient=True, disable=not console.is_terminal)
-        self._bar.start()
-        self._task = self._bar.add_task("placing", total=None)
-        return self
-
-    def show(self, done: int, of: int, what: str) -> None:
-        self._bar.update(self._task, completed=done, total=of, description=what)
-
-    def __exit__(self, *_: object) -> None:
-        self._bar.stop()
 
 
 def _notes(written: Written) -> list[str]:

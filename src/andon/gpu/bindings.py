@@ -21,6 +21,7 @@ _ENTRIES: dict[str, dict[str, Any]] = {
     "float": {"texture": _UNFILTERABLE},
     "float array": {"texture": {**_UNFILTERABLE, "view_dimension": "2d-array"}},
     "uint": {"texture": {"sample_type": "uint", "view_dimension": "2d"}},
+    "uint array": {"texture": {"sample_type": "uint", "view_dimension": "2d-array"}},
     "depth": {"texture": {"sample_type": "depth", "view_dimension": "2d"}},
     "sampler": {"sampler": {"type": "non-filtering"}},
     "smooth": {"texture": {"sample_type": "float", "view_dimension": "2d"}},
@@ -40,9 +41,9 @@ class BindGroup:
 def bind_group(gpu: Gpu, resources: Mapping[int, tuple[str, Any]], label: str = "") -> BindGroup:
     """A group of binding → (kind, texture view or buffer).
 
-    Kinds: ``uniform``, ``storage`` (read-only), ``float``, ``float array``, ``uint``, ``depth``,
-    ``depth array``, ``sampler``; floats are read by `textureLoad`, unfiltered. ``smooth`` are half
-    floats that a ``linear sampler`` interpolates. Seen by both shader stages.
+    Kinds: ``uniform``, ``storage`` (read-only), ``float``, ``float array``, ``uint``, ``uint
+    array``, ``depth``, ``depth array``, ``sampler``; floats are read by `textureLoad`, unfiltered.
+    ``smooth`` are half floats that a ``linear sampler`` interpolates. Seen by both shader stages.
     """
     import wgpu
 

@@ -3,10 +3,14 @@
 A scheduler runs code that its peers send it, and so do its workers: whoever reaches its port owns
 those machines. Let it listen on a network that you trust alone, or give it certificates (TLS).
 
-No state lives there. Bundles are sent once, and each worker writes them into a folder of its own
-once; artefacts come back and are kept by this side's `Store`. A worker that goes loses the task
-that it was doing, which the scheduler gives to another. A scheduler that goes ends the bake; one
-that begins again does what is missing.
+No state lives there. Bundles are sent once, and each worker, also one that comes later, writes them
+into a folder of its own once; artefacts come back and are kept by this side's `Store`. A worker
+that goes loses the task that it was doing, which the scheduler gives to another. A scheduler that
+goes ends the bake; one that begins again does what is missing.
+
+As many tasks are out at a time as workers have threads, and none waits in a worker's queue: there
+it would be blamed when the task before it takes the worker down. Workers of one thread
+(``dask worker --nthreads 1``) are the best for the same reason.
 """
 
 from __future__ import annotations
@@ -14,9 +18,7 @@ from __future__ import annotations
 import importlib
 import logging
 import queue
-import shutil
-import threading
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager, suppress
 from math import inf
 from pathlib import Path
@@ -24,9 +26,8 @@ from time import monotonic
 from typing import Any
 from uuid import uuid4
 
-from andon.bake.tasks.inputs import write_bundle
 from andon.bake.tasks.model import Bundle, Task
-from andon.bake.tasks.outcomes import ATTEMPTS, Fault, Outcome, performed
+from andon.bake.tasks.outcomes import ATTEMPTS, Fault, Outcome
 from andon.errors import MachineError
 
 __all__ = ["DaskWorkers"]
@@ -35,12 +36,6 @@ __all__ = ["DaskWorkers"]
 _PAUSE_SECONDS = 0.5
 # How old what is known of the workers may be.
 _LOOK_SECONDS = 1.0
-# Where workers keep bundles, in the folder that Dask gives them and removes.
-_FOLDER = "andon-inputs"
-# Tasks that are sent for each one that is being done, so that workers need not wait for us.
-_AHEAD = 2
-# Folders of bundles are written once, by whichever thread of a worker comes first.
-_WRITING = threading.Lock()
 
 
 class DaskWorkers:
@@ -112,6 +107,8 @@ class DaskWorkers:
 
     def _check(self, client: Any) -> None:
         """There are workers, and they have this version."""
+        from andon.bake.tasks.cluster_worker import version
+
         try:
             client.wait_for_workers(1, timeout=self.connect_seconds)
         except Exception as error:
@@ -119,10 +116,10 @@ class DaskWorkers:
                 f"the Dask scheduler at {self.address} has no workers",
                 remedy=f"start some: dask worker {self.address}",
             ) from error
-        for worker, version in client.run(_version, on_error="return").items():
-            if version != _version():
+        for worker, found in client.run(version, on_error="return").items():
+            if found != version():
                 raise MachineError(
-                    f"the Dask worker {worker} has no Andon {_version()}: {version}",
+                    f"the Dask worker {worker} has no Andon {version()}: {found}",
                     remedy="install the same version there",
                 )
 
@@ -133,8 +130,7 @@ class _DaskPool:
     def __init__(self, client: Any, address: str, folder: Path, patience_seconds: float) -> None:
         self._client, self._address, self._folder = client, address, folder
         self._patience = patience_seconds
-        self._bundles: Mapping[str, Bundle] = {}
-        self._sent: dict[str, Any] = {}
+        self._name = f"andon-inputs-{uuid4().hex}"
         self._running: dict[Any, Task] = {}
         self._ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._threads, self._looked, self._seen = 1, -inf, monotonic()
@@ -147,28 +143,24 @@ class _DaskPool:
 
     @property
     def free(self) -> int:
-        return _AHEAD * self.count - len(self._running)
+        return self.count - len(self._running)
 
     def send(self, bundles: Mapping[str, Bundle]) -> None:
-        """Puts the bundles onto all workers."""
-        self._bundles = bundles
+        """Puts the bundles onto all workers, and onto those that come later."""
+        from andon.bake.tasks.cluster_worker import Inputs
+
         try:
-            sent = self._client.scatter([dict(each) for each in bundles.values()], broadcast=True)
+            self._client.register_plugin(Inputs(self._name, bundles), name=self._name)
         except Exception as error:
             raise self._gone(_first_line(error)) from error
-        self._sent = dict(zip(bundles, sent, strict=True))
 
     def start(self, task: Task, /) -> None:
         """See `Pool`."""
-        names, digests = list(task.inputs), list(task.inputs.values())
-        sent = [self._sent[each] for each in digests]
+        from andon.bake.tasks.cluster_worker import performed_there
+
+        key = f"andon-{task.key}-{uuid4().hex[:12]}"
         try:
-            future = self._client.submit(
-                _performed_there,
-                *(task, names, digests, *sent),
-                key=f"andon-{task.key}-{uuid4().hex[:12]}",
-                pure=False,
-            )
+            future = self._client.submit(performed_there, task, self._name, key=key, pure=False)
         except Exception as error:
             raise self._gone(_first_line(error)) from error
         self._running[future] = task
@@ -192,7 +184,7 @@ class _DaskPool:
         """Lets workers remove their folders."""
         if self._client.status == "running":
             with suppress(Exception):
-                self._client.run(_forget, list(self._bundles))
+                self._client.unregister_worker_plugin(self._name)
 
     def _failed(self, task: Task, error: Exception) -> Outcome:
         """An attempt that came to no end on a worker."""
@@ -200,8 +192,6 @@ class _DaskPool:
         if type(error).__name__ == "KilledWorker":  # the scheduler has tried it several times
             words = "the workers that tried it died (out of memory?)"
             return Outcome(task.key, Fault("machine", words), spent=ATTEMPTS)
-        # With a worker its inputs may have gone.
-        self.send(self._bundles)
         return Outcome(task.key, Fault("machine", f"{type(error).__name__}: {_first_line(error)}"))
 
     def _look(self, *, now: bool = False) -> None:
@@ -225,46 +215,6 @@ class _DaskPool:
             f"the Dask scheduler at {self._address} is of no more use: {why}",
             remedy=f"start it again, or bake without it: what is done is kept in {self._folder}",
         )
-
-
-def _version() -> str:
-    from andon import __version__
-
-    return __version__
-
-
-def _performed_there(
-    task: Task, names: Sequence[str], digests: Sequence[str], *bundles: Bundle
-) -> Outcome:
-    """Does a task on a worker of the cluster."""
-    worker = _distributed().get_worker()
-    root = Path(worker.local_directory) / _FOLDER
-    try:
-        with _WRITING:
-            folders = [_folder(root, *each) for each in zip(digests, bundles, strict=True)]
-    except OSError as error:
-        words = f"{worker.address}: inputs cannot be written: {error.strerror or error}"
-        return Outcome(task.key, Fault("machine", words), worker=worker.address)
-    return performed(task, dict(zip(names, folders, strict=True)), worker.address)
-
-
-def _folder(root: Path, digest: str, bundle: Bundle) -> Path:
-    """The folder of a bundle, written if it is not there; whole or not there at all."""
-    folder = root / digest
-    if not folder.is_dir():
-        half = root / f"{digest}.half"
-        shutil.rmtree(half, ignore_errors=True)
-        write_bundle(half, bundle).rename(folder)
-    return folder
-
-
-def _forget(digests: Sequence[str], dask_worker: Any = None) -> None:
-    """Runs beside the tasks of a worker, which Dask hands over by this argument's name."""
-    root = Path(dask_worker.local_directory) / _FOLDER
-    for digest in digests:
-        shutil.rmtree(root / digest, ignore_errors=True)
-    with suppress(OSError):
-        root.rmdir()
 
 
 def _distributed() -> Any:

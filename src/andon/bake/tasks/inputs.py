@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 from andon.bake.tasks.model import Bundle
 from andon.errors import MachineError
 
-__all__ = ["inputs_in", "write_bundle"]
+__all__ = ["inputs_in", "remove_inputs", "write_bundle"]
 
 NAME = "inputs"
 
@@ -23,12 +23,13 @@ def inputs_in(folder: Path, bundles: Mapping[str, Bundle], /) -> Generator[dict[
     What a killed bake has left is removed and written again, since nobody knows how far it came.
     Raises `MachineError` where they cannot be written.
     """
-    root = folder / NAME
-    _remove(root)
+    remove_inputs(folder)
     try:
-        yield {digest: _written(root / digest, bundle) for digest, bundle in bundles.items()}
+        yield {
+            digest: _written(folder / NAME / digest, bundle) for digest, bundle in bundles.items()
+        }
     finally:
-        _remove(root)
+        remove_inputs(folder)
 
 
 def write_bundle(folder: Path, bundle: Bundle, /) -> Path:
@@ -56,8 +57,9 @@ def _written(folder: Path, bundle: Bundle) -> Path:
         ) from error
 
 
-def _remove(root: Path) -> None:
-    """Removes folders of bundles; what else somebody put there stays."""
+def remove_inputs(folder: Path, /) -> None:
+    """Removes bundles that are in `folder`; what else somebody put there stays."""
+    root = folder / NAME
     if not root.is_dir():
         return
     for path in root.iterdir():

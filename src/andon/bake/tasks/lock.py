@@ -82,8 +82,9 @@ def _taken(folder: Path, of: str, remedy: str) -> int:
                 remedy=remedy,
             )
         if _is_named(handle, path):
-            os.ftruncate(handle, 0)
-            os.write(handle, str(os.getpid()).encode())
+            with suppress(OSError):  # a full disk: what is to be written next says so
+                os.ftruncate(handle, 0)
+                os.write(handle, str(os.getpid()).encode())
             return handle
         os.close(handle)  # the one before has removed it in between
 

@@ -28,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from andon.bake.tasks.events import Events
+from andon.bake.tasks.inputs import remove_inputs
 from andon.bake.tasks.lock import locked
 from andon.errors import MachineError
 from andon.files.atomic import write_bytes
@@ -82,7 +83,14 @@ class Store:
         total = hashlib.sha256(data).hexdigest()
         facts = {"sha256": total, "bytes": len(data), "seconds": round(seconds, 6)}
         self.note("done", key=key, **facts, worker=worker, attempt=attempt)
-        return write_bytes(self.path(key), data)
+        try:
+            return write_bytes(self.path(key), data)
+        except MachineError as error:
+            raise MachineError(
+                error.what,
+                remedy="free space or choose a folder that can be written, and begin again: what "
+                f"is done is kept in {self.folder}",
+            ) from error
 
     def note(self, event: str, /, **facts: Any) -> None:
         """Writes an event into the journal, with its time (UTC)."""
@@ -97,8 +105,8 @@ class Store:
     def locked(self) -> Generator[None]:
         """Holds the folder, which is made: one process at a time writes into it.
 
-        May be nested. What a killed one has left half-written goes. Raises `MachineError` where
-        another process holds the folder, and where it cannot be written.
+        May be nested. What a killed one has left half-written goes, and its inputs. Raises
+        `MachineError` where another process holds the folder, and where it cannot be written.
         """
         if self._depth:
             yield
@@ -107,6 +115,7 @@ class Store:
             self._depth += 1
             try:
                 self._remove(r"\.([0-9a-f]{64}|plan)\.[0-9a-f]{12}\.tmp\..+")
+                remove_inputs(self.folder)
                 yield
             finally:
                 self._depth -= 1

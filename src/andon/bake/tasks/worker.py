@@ -11,7 +11,6 @@ import pickle
 import queue
 import signal
 import struct
-import sys
 import threading
 from collections.abc import Mapping
 from pathlib import Path
@@ -78,5 +77,4 @@ def _private_streams() -> tuple[IO[bytes], IO[bytes]]:
     os.dup2(nothing, 0)
     os.dup2(2, 1)
     os.close(nothing)
-    sys.stdout.reconfigure(line_buffering=True)  # pyright: ignore[reportAttributeAccessIssue]
     return given, taken

@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 from andon.transport.baked.model import BakedLight, BakedMoment, IlluminanceMap
+from andon.transport.baked.reference import baked_illuminance, illuminance_at
 
-__all__ = ["BakedLight", "BakedMoment", "IlluminanceMap"]
+__all__ = ["BakedLight", "BakedMoment", "IlluminanceMap", "baked_illuminance", "illuminance_at"]

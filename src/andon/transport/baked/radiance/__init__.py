@@ -15,7 +15,7 @@ textures            mesh and picture, bilinear,        one reflectance for each 
                     repeated as glTF's
 what emits          *glow*, beside *plastic* in a      *light*: every triangle would be
                     mixture; off for maps of lamps     aimed at, and would reflect nothing
-point lamps         balls of 1 mm, the distribution    Radiance's spotlight (hard edge) and
+point lamps         balls of 0.1 mm, the distribution   Radiance's spotlight (hard edge) and
                     as function or data                ies2rad (six digits, no type A)
 area lamps          flat tiles, one ray to the         Radiance's own large balls, which have
                     middle of each                     no horizon
@@ -34,7 +34,15 @@ the relighting paper, section 2.4, for diffuse surfaces and one map for each lam
 
 from __future__ import annotations
 
+from andon.transport.baked.radiance.bodies import unsaid
 from andon.transport.baked.radiance.lamps import is_distant_glow
+from andon.transport.baked.radiance.painted import with_triangle_reflectance
 from andon.transport.baked.radiance.scene import OCTREE, radiance_bundle
 
-__all__ = ["OCTREE", "is_distant_glow", "radiance_bundle"]
+__all__ = [
+    "OCTREE",
+    "is_distant_glow",
+    "radiance_bundle",
+    "unsaid",
+    "with_triangle_reflectance",
+]

@@ -25,10 +25,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.lamps import AnyAreaLamp, Body, Lamp, PointLamp
+from andon.transport.baked.radiance.lamps import is_distant_glow
 from andon.transport.baked.radiance.materials import MIX_FILE, Finish, material_text
 from andon.transport.baked.radiance.text import joined, polygons_text
 
-__all__ = ["SIDE_CAL", "Standing", "standing"]
+__all__ = ["SIDE_CAL", "Standing", "standing", "unsaid"]
 
 Float = NDArray[np.float64]
 
@@ -92,3 +93,26 @@ def _solid(body: Body, name: str, is_own: bool, black: bool) -> str:
 
 def _triangles(body: Body, name: str) -> str:
     return polygons_text(body.geometry.positions[body.geometry.triangles], name)
+
+
+def unsaid(lamps: Sequence[Lamp], bodies: Sequence[Body] = (), /) -> tuple[str, ...]:
+    """What frames compute otherwise than Radiance does, one sentence for each lamp; maybe none.
+
+    In Radiance everything casts a shadow: a lamp that frames let shine through something cannot
+    be said, and a sky is hidden by what stands before it.
+    """
+    own = {body.name for body in bodies}
+    found: dict[str, str] = {}
+    for lamp in lamps:
+        name = lamp.owner or lamp.name
+        if is_distant_glow(lamp):
+            found[name] = f"{name}: surfaces hide this sky in its maps, and nothing does in frames"
+            continue
+        shadow = getattr(lamp, "shadow", None)
+        passed = set[str]() if shadow is None else shadow.through - own - {name}
+        if shadow is None:
+            found[name] = f"{name}: casts no shadow in frames, but does in its maps"
+        elif passed:
+            names = ", ".join(sorted(passed))
+            found[name] = f"{name}: shines through {names} in frames, but not in its maps"
+    return tuple(found.values())

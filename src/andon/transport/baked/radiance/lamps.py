@@ -3,7 +3,7 @@
 =================== ======================================================================
 kind                Radiance
 =================== ======================================================================
-point               `light` ball of 1 mm, I/(πr²)
+point               `light` ball of 0.1 mm, I/(πr²)
 spot                the same with glTF's falloff in a function file
 luminaire           the same with the file's candela as `brightdata`
 directional         `light` source of 0.01°: small against any edge of a shadow
@@ -30,10 +30,10 @@ from andon.lamps import (
     Lamp,
     PointLamp,
     SkyLamp,
-    SphereLamp,
 )
 from andon.transport.baked.radiance.emitters import Tiles, tiles_of
-from andon.transport.baked.radiance.luminaires import POINT_RADIUS_M, point_text
+from andon.transport.baked.radiance.luminaires import point_text
+from andon.transport.baked.radiance.places import balls_of
 from andon.transport.baked.radiance.text import (
     LUMENS_PER_WATT,
     joined,
@@ -50,8 +50,6 @@ Float = NDArray[np.float64]
 # Full angle of a directional source, degrees: small against any shadow edge, large against the
 # rounding of its solid angle.
 DIRECTIONAL_DEGREES = 0.01
-# Balls of lamps that stand in one place are shells around one another, each so much wider.
-WIDER = 1.02
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ def is_distant_glow(lamp: Lamp, /) -> bool:
 def lamps_text(
     lamps: Sequence[Lamp], /, *, tiles: int, opaque: frozenset[str] = frozenset()
 ) -> LampText:
-    """All of `lamps`, in their order.
+    """All of `lamps`: those with a place first, then the others, in their order.
 
     Parameters
     ----------
@@ -82,29 +80,19 @@ def lamps_text(
     opaque : names of lamps that hide what is behind them although they are not drawn.
     """
     text, files = "", dict[str, bytes]()
-    balls = [(lamp.position_m, lamp.radius_m) for lamp in lamps if isinstance(lamp, SphereLamp)]
+    for number, ball in enumerate(balls_of(lamps)):
+        more, data = point_text(
+            ball.lamp, f"lamp{number}", hides=ball.hides, radius_m=ball.radius_m
+        )
+        text, files = text + more, files | data
     for number, lamp in enumerate(lamps):
-        name = f"lamp{number}"
-        if isinstance(lamp, PointLamp):
-            if not triple(lamp.intensity_cd, lamp.name).any():
-                continue
-            radius = _free_radius(lamp.position_m, balls)
-            alone = radius == POINT_RADIUS_M
-            more, data = point_text(lamp, name, hides=alone, radius_m=radius)
-            text, files = text + more, files | data
-            balls.append((lamp.position_m, radius))
-        elif isinstance(lamp, AnyAreaLamp):
+        name = f"light{number}"
+        if isinstance(lamp, AnyAreaLamp):
             hides = lamp.drawn or lamp.name in opaque
             text += _area_text(tiles_of(lamp, tiles), lamp.name, name, hides)
-        else:
+        elif not isinstance(lamp, PointLamp):
             text += _distant_text(lamp, name)
     return LampText(text, files)
-
-
-def _free_radius(place: Float, balls: Sequence[tuple[Float, float]]) -> float:
-    """Of a point lamp's ball that none of the `balls` so far hides: it is around them."""
-    inside = [r for middle, r in balls if np.linalg.norm(middle - place) < r + POINT_RADIUS_M]
-    return max([POINT_RADIUS_M, *(WIDER * r for r in inside)])
 
 
 def _area_text(parts: list[Tiles], field: str, name: str, hides: bool) -> str:

@@ -25,7 +25,8 @@ __all__ = ["POINT_CAL", "POINT_FILE", "POINT_RADIUS_M", "point_text"]
 
 Float = NDArray[np.float64]
 
-POINT_RADIUS_M = 1e-3
+# Small against all things, so that it hides none; rays to its middle still meet it in doubles.
+POINT_RADIUS_M = 1e-4
 
 # Dx, Dy, Dz is the direction of the ray that arrives at the lamp: away from it is the negative.
 # Of a luminaire A1…A9 are its axes C = 0, C = 90 and up; A10…A13 the ends of its angles, A14 how

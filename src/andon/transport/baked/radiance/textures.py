@@ -1,11 +1,15 @@
 """Textured surfaces as Radiance is told them: a mesh, and a picture that is looked up on it.
 
-    u, v of glTF ──▶ frac(u)·w + 1, (1 − frac(v))·h + 1 ──▶ picture of (w + 2) × (h + 2) pixels
+::
 
-Radiance's pictures have their origin below, their shorter side is 1, and what lies outside is not
-repeated; so the picture gets a rim of one pixel of the other side, and the lookup is bilinear
-across the seam as `andon.surface.textures.sample_bilinear` is. Pixels are RGBE: 0.4 % of their
-largest channel.
+    u ──frac·w──▶ ┌─┬───────┬─┐     A rim of one pixel of the other side: Radiance's pictures are
+                  ├─┼───────┼─┤     not repeated, so the lookup crosses the seam as
+                  │ │ w × h │ │     `andon.surface.textures.sample_bilinear` does.
+                  ├─┼───────┼─┤
+                  └─┴───────┴─┘     RGBE pixels: off by at most 0.4 % of their largest channel.
+
+Radiance's pictures begin below; from one end to the other, which are the *middles* of the outermost
+pixels, the shorter side is 1 and the longer one their ratio (measured: a ramp comes out exact).
 """
 
 from __future__ import annotations
@@ -32,8 +36,9 @@ MOST_PX = 1024
 TEXTURE_FILE = "texture.cal"
 TEXTURE_CAL = """{ Coordinates in a picture with a rim of one pixel, u to the right, v down. }
 tex_frac(a) = a - floor(a);
-tex_u = (tex_frac(Lu)*A1 + 1) / A3;
-tex_v = ((1 - tex_frac(Lv))*A2 + 1) / A3;
+tex_ends(a, n) = (a*n + 0.5) / (n + 1);
+tex_u = tex_ends(tex_frac(Lu), A1) * (A1 + 2) / A3;
+tex_v = (1 - tex_ends(tex_frac(Lv), A2)) * (A2 + 2) / A3;
 tex_r(r, g, b) = r;
 tex_g(r, g, b) = g;
 tex_b(r, g, b) = b;

@@ -24,7 +24,8 @@ __all__ = ["traced_illuminance", "traced_luminance"]
 
 Float = NDArray[np.float64]
 
-OCTREE = "scene.oct"
+# What `radiance_bundle` makes: lamps in all detail, and of few tiles for what is reflected.
+OCTREE, BOUNCES = "scene.oct", "bounce.oct"
 # Radiance's own luminous efficacy, lm/W, applied channel by channel.
 LUMENS_PER_WATT = 179.0
 # What is the same in every quality. Every lamp is tested (-dt, -dc), at its centre (-dj); there are
@@ -66,13 +67,16 @@ def traced_illuminance(
     _check(places, facing, "normal", bounces)
     rays = np.concatenate([places, facing], axis=1)
 
-    def ask(most: int) -> Float:
+    def ask(octree: str, most: int) -> Float:
         words = ["-I", *FIXED, *quality.options(most)]
-        return _traced(folder, words, rays, time_limit_seconds)
+        return _traced(folder, words, rays, time_limit_seconds, octree)
 
-    lux = ask(bounces + direct_bounces)
-    if part == "bounce":
-        lux = np.maximum(lux - ask(direct_bounces), 0)
+    lux = np.zeros_like(places)
+    if bounces > 0:
+        reflected = ask(BOUNCES, bounces + direct_bounces) - ask(BOUNCES, direct_bounces)
+        lux = np.maximum(reflected, 0)
+    if part == "all":
+        lux = lux + ask(OCTREE, direct_bounces)
     return lux.astype(np.float32)
 
 
@@ -94,7 +98,7 @@ def traced_luminance(
     _check(places, looking, "directions", bounces)
     rays = np.concatenate([places, looking], axis=1)
     words = [*FIXED, *quality.options(bounces)]
-    return _traced(folder, words, rays, time_limit_seconds).astype(np.float32)
+    return _traced(folder, words, rays, time_limit_seconds, OCTREE).astype(np.float32)
 
 
 def _triples(values: NDArray[Any], field: str) -> Float:
@@ -120,11 +124,11 @@ def _check(places: Float, facing: Float, field: str, bounces: int) -> None:
         raise InputError(f"must be ≥ 0, got {bounces}", field="bounces")
 
 
-def _traced(folder: Path, words: list[str], rays: Float, limit: float) -> Float:
+def _traced(folder: Path, words: list[str], rays: Float, limit: float, octree: str) -> Float:
     """(n, 3) photometric answers of `rtrace` to rays (n, 6)."""
     if len(rays) == 0:
         return np.empty((0, 3))
-    answer = run_radiance("rtrace", [*words, OCTREE], rays.tobytes(), limit, cwd=folder)
+    answer = run_radiance("rtrace", [*words, octree], rays.tobytes(), limit, cwd=folder)
     if len(answer) != 24 * len(rays):
         raise MachineError(
             f"rtrace answered {len(answer)} bytes instead of {24 * len(rays)}",

@@ -36,6 +36,7 @@ def radiance_bundle(
     emission: bool = False,
     black: bool = False,
     tiles: int = TILES,
+    time_limit_seconds: float = LIMIT_SECONDS,
 ) -> Bundle:
     """The files from which `rtrace`, run in their folder, computes ``scene.oct``.
 
@@ -52,6 +53,7 @@ def radiance_bundle(
     black : nothing reflects; with a sky, ``-ab 1`` is then its direct light.
     tiles : about how many flat pieces stand for each area lamp; the time of direct light grows
         with them.
+    time_limit_seconds : for each run of a program.
 
     Raises
     ------
@@ -74,10 +76,12 @@ def radiance_bundle(
         SCENE: (surfaces.text + there.text + shining.text).encode("ascii"),
     }
     more = {f"include{number}.rad": text for number, text in enumerate(include.values())}
-    return _built(files | more, surfaces.meshes, [SCENE, *more])
+    return _built(files | more, surfaces.meshes, [SCENE, *more], time_limit_seconds)
 
 
-def _built(files: dict[str, bytes], meshes: Mapping[str, bytes], scenes: list[str]) -> Bundle:
+def _built(
+    files: dict[str, bytes], meshes: Mapping[str, bytes], scenes: list[str], limit: float
+) -> Bundle:
     """The files, the meshes and the octree that Radiance's programs make of them."""
     with TemporaryDirectory(prefix="andon-radiance-") as name:
         folder = Path(name)
@@ -85,7 +89,7 @@ def _built(files: dict[str, bytes], meshes: Mapping[str, bytes], scenes: list[st
             (folder / file).write_bytes(contents)
         for mesh, contents in meshes.items():
             (folder / f"{mesh}.obj").write_bytes(contents)
-            run_radiance("obj2mesh", [f"{mesh}.obj", f"{mesh}.rtm"], b"", LIMIT_SECONDS, cwd=folder)
+            run_radiance("obj2mesh", [f"{mesh}.obj", f"{mesh}.rtm"], b"", limit, cwd=folder)
             files[f"{mesh}.rtm"] = (folder / f"{mesh}.rtm").read_bytes()
-        octree = run_radiance("oconv", ["-w", *scenes], b"", LIMIT_SECONDS, cwd=folder)
+        octree = run_radiance("oconv", ["-w", *scenes], b"", limit, cwd=folder)
     return files | {OCTREE: octree}

@@ -302,9 +302,10 @@ def test_dimming_is_linear():
 
 def test_radiance():
     """1 cd is 1/179 W/sr in each channel of Radiance."""
-    from andon.verify.truths.sources import POINT_RADIUS_M, PointSource, source_text
+    from andon.transport.baked.radiance.luminaires import POINT_RADIUS_M, point_text
 
-    text = source_text(PointSource(ORIGIN, np.array([1.0, 2, 3])), "lamp", "")
+    lamp = PointLamp("lamp", ORIGIN, np.array([1.0, 2, 3]))
+    text, _ = point_text(lamp, "lamp", hides=True, radius_m=POINT_RADIUS_M)
     radiance = [float(word) for word in re.search(r"0 0 3 (\S+) (\S+) (\S+)", text).groups()]
     close(radiance, np.array([1, 2, 3]) / (np.pi * POINT_RADIUS_M**2) / 179, rtol=1e-6)
 

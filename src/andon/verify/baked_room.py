@@ -53,8 +53,6 @@ BOUNCES = 3
 DIMMING = 0.3
 # Pixels at which the truth is asked; converged light of all would take an hour.
 ASKED = 1500
-# Every point traced, none interpolated.
-TRUTH = Quality("truth", 2048, 0, 0.0, 0, 0.05, 1e-5, 0.0, 0.0, 0.0)
 # Of the photograph's white above its brightest pixel, and above the brightest relit one.
 MARGIN = 1.02
 

@@ -43,6 +43,7 @@ def radiance_bundle(
     emission: bool = False,
     black: bool = False,
     tiles: int = TILES,
+    time_limit_seconds: float = LIMIT_SECONDS,
 ) -> Bundle:
     """The files from which `rtrace`, run in their folder, computes ``scene.oct``, the scene with
     its lamps in all detail, and ``bounce.oct``, for the light that surfaces reflect.
@@ -61,6 +62,7 @@ def radiance_bundle(
     black : nothing reflects; with a sky, ``-ab 1`` is then its direct light.
     tiles : about how many flat pieces stand for each area lamp; the time of direct light grows
         with them.
+    time_limit_seconds : for each run of a program.
 
     Raises
     ------
@@ -86,10 +88,12 @@ def radiance_bundle(
         BOUNCE_SCENE: (around + few.text).encode("ascii"),
     }
     more = [name for name in include if name.endswith(".rad")]
-    return _built(files | dict(include), surfaces.meshes, more)
+    return _built(files | dict(include), surfaces.meshes, more, time_limit_seconds)
 
 
-def _built(files: dict[str, bytes], meshes: Mapping[str, bytes], more: list[str]) -> Bundle:
+def _built(
+    files: dict[str, bytes], meshes: Mapping[str, bytes], more: list[str], limit: float
+) -> Bundle:
     """The files, the meshes and the octrees that Radiance's programs make of them.
 
     `more` : names of scene texts beside Andon's own.
@@ -100,9 +104,8 @@ def _built(files: dict[str, bytes], meshes: Mapping[str, bytes], more: list[str]
             (folder / file).write_bytes(contents)
         for mesh, contents in meshes.items():
             (folder / f"{mesh}.obj").write_bytes(contents)
-            run_radiance("obj2mesh", [f"{mesh}.obj", f"{mesh}.rtm"], b"", LIMIT_SECONDS, cwd=folder)
+            run_radiance("obj2mesh", [f"{mesh}.obj", f"{mesh}.rtm"], b"", limit, cwd=folder)
             files[f"{mesh}.rtm"] = (folder / f"{mesh}.rtm").read_bytes()
         for scene, octree in ((SCENE, OCTREE), (BOUNCE_SCENE, BOUNCE_OCTREE)):
-            words = ["-w", scene, *more]
-            files[octree] = run_radiance("oconv", words, b"", LIMIT_SECONDS, cwd=folder)
+            files[octree] = run_radiance("oconv", ["-w", scene, *more], b"", limit, cwd=folder)
     return files

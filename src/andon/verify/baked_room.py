@@ -10,7 +10,6 @@ What differs between ours and the truth is ΔE alone, and what 8 bits lose.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,14 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.bake.maps import bake_maps
-from andon.files.cameras import write_camera
-from andon.files.pictures import write_exr, write_png
 from andon.lamps import Lamp, PolygonLamp, resolve_lamps
-from andon.pipeline import EngineName, Frame, render
-from andon.quantities import Geometry, Surface
-from andon.responses import SRGB
-from andon.scene import Scene, scene_from_dict
+from andon.quantities import Surface
+from andon.scene import scene_from_dict
 from andon.spaces import View
 from andon.surface import reference as surface
 from andon.surface.load import surface_of_mesh

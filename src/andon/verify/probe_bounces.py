@@ -33,7 +33,7 @@ from andon.surface.still import still_geometry
 from andon.transport.baked.radiance.quality import QUALITIES
 from andon.transport.probes.placement import place_probes
 
-__all__ = ["BounceErrors", "By", "box_scene", "bounce_errors", "furnace_error", "true_irradiance"]
+__all__ = ["BounceErrors", "By", "bounce_errors", "box_scene", "furnace_error", "true_irradiance"]
 
 Float = NDArray[np.float64]
 By = Literal["probes", "radiance"]
@@ -158,16 +158,14 @@ def true_irradiance(
             folders[light].mkdir()
             for file, contents in files.items():
                 (folders[light] / file).write_bytes(contents)
-        lux = gathered(
-            folders, points, facing, quality=QUALITIES[quality], bounces=bounces + 1
-        )
+        lux = gathered(folders, points, facing, quality=QUALITIES[quality], bounces=bounces + 1)
     return lux.reshape(len(places), len(normals), 3)
 
 
 @cache
 def furnace_error(by: By, bounces: int, quality: str = "draft", engine: str = "auto") -> float:
     """Largest relative error of the mean light in the furnace, against its closed form."""
-    own = {"bounces_quality": quality} if by == "radiance" else {}
+    own: dict[str, Any] = {"bounces_quality": quality} if by == "radiance" else {}
     with TemporaryDirectory() as name:
         scene = box_scene(
             Path(name), furnace=True, bounces=bounces, bounces_by=by, cube_size_px=8, **own

@@ -165,7 +165,7 @@ def true_irradiance(
 @cache
 def furnace_error(by: By, bounces: int, quality: str = "draft", engine: str = "auto") -> float:
     """Largest relative error of the mean light in the furnace, against its closed form."""
-    own = {"bounces_quality": quality} if by == "radiance" else {}
+    own: dict[str, Any] = {"bounces_quality": quality} if by == "radiance" else {}
     with TemporaryDirectory() as name:
         scene = box_scene(
             Path(name), furnace=True, bounces=bounces, bounces_by=by, cube_size_px=8, **own

@@ -215,7 +215,9 @@ def test_two_bakes_of_one_folder(tmp_path):
     scene = room_scene(tmp_path)
     with (
         Store(tmp_path / "maps").locked(),
-        pytest.raises(MachineError, match=rf"another bake of .*maps is running \(pid {os.getpid()}"),
+        pytest.raises(
+            MachineError, match=rf"another bake of .*maps is running \(pid {os.getpid()}"
+        ),
     ):
         bake(scene)
     assert len(bake(scene)[1]) == 6

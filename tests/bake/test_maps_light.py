@@ -108,7 +108,10 @@ def test_flicker_is_not_baked(tmp_path):
     assert bake(scene)[1] == []
 
 
-MOVES = [{"time_seconds": 0.0, "position": [-0.8, 0, 1]}, {"time_seconds": 1.0, "position": [0.8, 0, 1]}]
+MOVES = [
+    {"time_seconds": 0.0, "position": [-0.8, 0, 1]},
+    {"time_seconds": 1.0, "position": [0.8, 0, 1]},
+]
 
 
 def moving_tables(folder, **entry):
@@ -291,9 +294,7 @@ def test_a_brighter_photograph_reflects_more(tmp_path):
         lamp = dict(photographed(folder).model_dump(exclude_unset=True)["lamp"][0])
         lamp["transport"] = "direct+bounce"
         about = {"source": "photo.png", "luminance_per_unit": 60.0}
-        scene = photographed(
-            folder, lamp=[lamp], ambient={"illuminance_lux": e0}, capture=about
-        )
+        scene = photographed(folder, lamp=[lamp], ambient={"illuminance_lux": e0}, capture=about)
         bake(scene)
         (stored,) = baked_moment(folder / "maps")
         means.append(float(np.nanmean(stored.lux["a"])))

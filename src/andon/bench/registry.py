@@ -81,6 +81,7 @@ def rows() -> tuple[BenchRow, ...]:
     from andon.bench import (
         areas,
         bake,
+        baked,
         glare,
         glare_frame,
         glare_needles,
@@ -97,3 +98,4 @@ def rows() -> tuple[BenchRow, ...]:
     rest = glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS
     veils = glare.ROWS + glare_frame.ROWS + glare_needles.ROWS + glare_quads.ROWS
     return light + rest + veils + bake.ROWS
+    return light + baked.ROWS + rest + veils

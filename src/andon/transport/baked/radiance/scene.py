@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from andon.bake.tasks.model import Bundle
 from andon.files.radiance_programs import run_radiance
 from andon.lamps import Body, Lamp, PointLamp
 from andon.quantities import Geometry
@@ -37,8 +36,8 @@ def radiance_bundle(
     black: bool = False,
     tiles: int = TILES,
     time_limit_seconds: float = LIMIT_SECONDS,
-) -> Bundle:
-    """The files from which `rtrace`, run in their folder, computes ``scene.oct``.
+) -> dict[str, bytes]:
+    """Name → contents of the files from which `rtrace`, run in their folder, computes.
 
     Identical inputs give identical bytes.
 
@@ -81,7 +80,7 @@ def radiance_bundle(
 
 def _built(
     files: dict[str, bytes], meshes: Mapping[str, bytes], scenes: list[str], limit: float
-) -> Bundle:
+) -> dict[str, bytes]:
     """The files, the meshes and the octree that Radiance's programs make of them."""
     with TemporaryDirectory(prefix="andon-radiance-") as name:
         folder = Path(name)

@@ -50,6 +50,7 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        baked_quality,
         caustic,
         gaze,
         glare_flicker,
@@ -101,4 +102,5 @@ def rows() -> tuple[Row, ...]:
         *glare_models.ROWS,
         *glare_needles.ROWS,
         *glare_numbers.ROWS,
+        *baked_quality.ROWS,
     )

@@ -51,6 +51,7 @@ def rows() -> tuple[Row, ...]:
         area_scene,
         areas,
         baked,
+        baked_quality,
         caustic,
         gaze,
         glare_flicker,
@@ -105,4 +106,5 @@ def rows() -> tuple[Row, ...]:
         *glare_models.ROWS,
         *glare_needles.ROWS,
         *glare_numbers.ROWS,
+        *baked_quality.ROWS,
     )

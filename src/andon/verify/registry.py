@@ -50,6 +50,7 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        baked_projection,
         caustic,
         gaze,
         glare_flicker,
@@ -87,6 +88,7 @@ def rows() -> tuple[Row, ...]:
         *harmonics.ROWS,
         *probe_light.ROWS,
         *probe_space.ROWS,
+        *baked_projection.ROWS,
         *gaze.ROWS,
         *glass.ROWS,
         *glass_blur.ROWS,

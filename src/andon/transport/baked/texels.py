@@ -76,8 +76,8 @@ def texels_of(seen: IlluminanceMap, depth_tolerance_m: float, /) -> Texels:
     edges = _edges(known, normal, reach, view.projection == "latlong", depth_tolerance_m)
     trust = np.where(known, _inwards(edges, view.projection == "latlong"), 0.0)
     # Single floats: 0.3 μm at 5 m, and half the room for what is kept.
-    vectors = (values.reshape(-1, 3).astype(np.float32) for values in (normal, reach))
-    return Texels(known.ravel(), *vectors, trust.ravel())
+    normals, reaches = (values.reshape(-1, 3).astype(np.float32) for values in (normal, reach))
+    return Texels(known.ravel(), normals, reaches, trust.ravel())
 
 
 def _edges(

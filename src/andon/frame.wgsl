@@ -8,6 +8,7 @@
 //!import andon/transport/direct/direct.wgsl
 //!import andon/composite/composite.wgsl
 //!import andon/composite/receivers.wgsl
+//!import andon/transport/baked/none.wgsl
 
 @group(0) @binding(0) var gbuffer: texture_2d<u32>;
 @group(0) @binding(1) var<uniform> view: ViewRecord;
@@ -19,11 +20,12 @@
 // Of the materials of virtual objects, MAX_OBJECT_MATERIALS of them: cd/m² that they emit, and
 // (taking.wgsl) what light they take.
 @group(0) @binding(5) var<uniform> emitted: array<vec4f, 4096>;
+// Where something is baked, binding 6 is the picture of it.
 
-fn added_lux(point: SurfacePoint) -> vec3f {
+fn added_lux(point: SurfacePoint, pixel: vec2f) -> vec3f {
   let bias = select(direct.bias_real_m, direct.bias_object_m, (point.flags & OBJECT) != 0u);
   let all = illuminance(point.position, point.normal, bias, point.flags >> BODY_SHIFT);
-  let lux = received_lux(point, all);
+  let lux = received_lux(point, all) + baked_lux(point, pixel);
   return select(vec3f(0.0), lux, (point.flags & VALID) != 0u);
 }
 
@@ -42,21 +44,21 @@ fn point_at(pixel: vec2f) -> SurfacePoint {
 }
 
 @fragment fn relit(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
-  let lux = added_lux(point_at(pixel.xy));
+  let lux = added_lux(point_at(pixel.xy), pixel.xy);
   let light = textureLoad(captured, vec2i(pixel.xy), 0).xyz;
   return vec4f(min(relit_linear(light, lux, ambient), MOST), 1.0);
 }
 
 @fragment fn relit_with_objects(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
   let point = point_at(pixel.xy);
-  let lux = added_lux(point);
+  let lux = added_lux(point, pixel.xy);
   let light = textureLoad(captured, vec2i(pixel.xy), 0).xyz;
   return vec4f(min(objects(point, pixel.xy, lux, relit_linear(light, lux, ambient)), MOST), 1.0);
 }
 
 @fragment fn relit_with_maps(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
   let point = point_at(pixel.xy);
-  let lux = added_lux(point);
+  let lux = added_lux(point, pixel.xy);
   let at = vec2i(pixel.xy);
   let real = relit_by_maps(textureLoad(captured, at, 0).xyz, textureLoad(per_lux, at, 0).xyz, lux);
   return vec4f(min(objects(point, pixel.xy, lux, real), MOST), 1.0);
@@ -77,5 +79,5 @@ const OFF_GLASS_M: f32 = 2e-4;
 }
 
 @fragment fn illuminance_map(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
-  return vec4f(added_lux(point_at(pixel.xy)), 1.0);
+  return vec4f(added_lux(point_at(pixel.xy), pixel.xy), 1.0);
 }

@@ -34,6 +34,7 @@ from andon.quantities import (
 from andon.responses import SRGB, Response
 from andon.scene import Scene
 from andon.spaces import View
+from andon.transport.baked.model import BakedSeen
 
 if TYPE_CHECKING:
     from andon.engines.prepared import Prepared
@@ -63,6 +64,8 @@ class Report:
     stage_seconds : wall time of each stage.
     ignored_tables : tables and keys of the scene that this version does not draw.
     glass : where the layers of glass appear and what is in focus; None without glass.
+    uncovered_share : of the pixels that take baked light, those that no illuminance map sees;
+        None without [baked].
     """
 
     engine: str
@@ -79,6 +82,7 @@ class Report:
     stage_seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     ignored_tables: tuple[str, ...] = ()
     glass: GlassReport | None = None
+    uncovered_share: float | None = None
 
 
 @dataclass(frozen=True)
@@ -99,6 +103,7 @@ class Frame:
     glass : the images that glass shows, sharp; None without glass.
     highlights : mirrored lamps alone, cd/m²; None where nothing mirrors.
     seen : what the eye gets through an optical see-through display; None for a video one.
+    baked : what the illuminance maps give, which `illuminance` holds; None without [baked].
     """
 
     captured: CameraFrame
@@ -113,6 +118,7 @@ class Frame:
     seen: Seen | None = None
     glass: Layered | None = None
     highlights: Luminance | None = None
+    baked: BakedSeen | None = None
 
 
 class Renderer:
@@ -192,7 +198,8 @@ class Renderer:
         captured = self.prepared.frames[self._view_name(view)]
         bodies, filtered = self._engine.read_bodies(captured, handles[0], self._moment)
         layered = self._engine.read_glass(captured, handles[0], self._moment)
-        report = self._report(captured, surface, layered)
+        baked = self._engine.read_baked(surface, self._moment)
+        report = self._report(captured, surface, layered, baked)
         seen = self._engine.read_seen(captured, *handles[2:])
         return Frame(
             captured,
@@ -207,6 +214,7 @@ class Renderer:
             seen,
             layered,
             self._engine.read_highlights(captured),
+            baked,
         )
 
     def picture(self, time_seconds: float = 0.0, view: str | None = None) -> NDArray[np.uint8]:
@@ -248,7 +256,13 @@ class Renderer:
             )
         return view
 
-    def _report(self, captured: CameraFrame, surface: Surface, layered: Layered | None) -> Report:
+    def _report(
+        self,
+        captured: CameraFrame,
+        surface: Surface,
+        layered: Layered | None,
+        baked: BakedSeen | None,
+    ) -> Report:
         model = self.prepared.surface
         glass = self.prepared.glass
         clipped = 0 if captured.clipped is None else int(captured.clipped.sum())
@@ -270,6 +284,7 @@ class Renderer:
             glass=glass.report(layered, self._moment.focus, self._moment.lamps)
             if glass and layered
             else None,
+            uncovered_share=None if baked is None else baked.uncovered_share,
         )
 
 

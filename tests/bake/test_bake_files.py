@@ -13,8 +13,8 @@ from worlds_of_probes import lamp_room
 import andon.bake.bake as bake_module
 from andon.bake import bake_file
 from andon.bake.journal import Journal
-from andon.bake.lock import locked
 from andon.bake.runner import Runner
+from andon.bake.tasks.lock import locked
 from andon.errors import InputError, MachineError
 from andon.files.volumes import read_volume
 from worlds import block, write_glb
@@ -131,7 +131,7 @@ def test_two_bakes_of_one_volume(tmp_path, monkeypatch):
 
 def test_a_killed_bake_holds_nobody_up(tmp_path):
     code = (
-        "import sys, time; from pathlib import Path; from andon.bake.lock import locked\n"
+        "import sys, time; from pathlib import Path; from andon.bake.tasks.lock import locked\n"
         "with locked(Path(sys.argv[1])): print('held', flush=True); time.sleep(60)"
     )
     folder = tmp_path / "kept"

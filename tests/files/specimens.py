@@ -16,6 +16,7 @@ from PIL import Image
 from andon.files import write_camera, write_exr, write_volume
 from andon.spaces import View
 from gaze_files import EYELINK, own_gaze
+from map_files import small_maps
 from photometry_files import ies, ldt
 from volume_files import two_rooms
 
@@ -211,6 +212,30 @@ middle.png 0.5 2 8 0 0
 dark.png   0.125 8 8 0 0
 """
 
+RAD = b"""# a lamp of measured light on a table
+void brightdata measured
+5 corr d.dat source.cal src_theta src_phi2
+0
+1 1
+
+measured light glowing
+0
+0
+3 100 90 80
+
+glowing sphere bulb 0 0 4 0 1 0 .05
+void plastic wood 0 0 5 .3 .2 .1 0 0
+void alias oak wood
+oak polygon table
+0
+0
+12
+ 0 0 0
+ 0 0 1
+ 1 0 1
+ 1 0 0
+"""
+
 RESPONSE_CSV = b"""encoded,linear_r,linear_g,linear_b
 0,0,0,0
 0.5,0.2,0.21,0.22
@@ -322,6 +347,18 @@ def _volume(path: Path) -> None:
     write_volume(path, two_rooms())
 
 
+def _rad(path: Path) -> None:
+    path.write_bytes(RAD)
+    (path.parent / "d.dat").write_bytes(b"1\n0 1 2\n.5 1\n")
+
+
+def _map(name: str) -> Callable[[Path], None]:
+    def write(path: Path) -> None:
+        path.write_bytes(small_maps()[name])
+
+    return write
+
+
 DEPTH = np.random.default_rng(RNG_SEED).uniform(1, 5, (5, 7))
 
 # name of the reader → how to write a small valid file at a path with the reader's suffix
@@ -351,4 +388,8 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "gaze.eyelink": _write(EYELINK.encode()),
     "gaps.csv": _write(GAPS_CSV),
     "gaps.json": _write(GAPS_JSON),
+    "maps.json": _map("maps.json"),
+    "geometry.exr": _map("geometry-0.exr"),
+    "illuminance.exr": _map("light-1-0-1.exr"),
+    "radiance.rad": _rad,
 }

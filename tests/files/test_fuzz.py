@@ -64,7 +64,7 @@ def by_name(reader: Reader) -> str:
 def test_every_registered_reader_has_a_specimen_and_a_kind() -> None:
     assert [reader.name for reader in READERS] == list(SPECIMENS)
     kinds = {"picture", "depth", "mesh", "camera", "response", "photometry", "volume"}
-    kinds |= {"exposures", "gaze", "gaps"}
+    kinds |= {"exposures", "gaze", "gaps", "maps", "geometry", "illuminance", "radiance"}
     assert {reader.kind for reader in READERS} == kinds
 
 
@@ -174,11 +174,15 @@ HOSTILE = {
     "depth.png": png_header(SIDE, SIDE, 16, 0) + PNG_END,
     "depth.pgm": f"P5\n{SIDE} {SIDE}\n65535\n".encode() + b"\0" * 100,
     "depth.exr": huge_exr(SIDE),
+    "geometry.exr": huge_exr(SIDE),
+    "illuminance.exr": huge_exr(SIDE),
 }
 
 
-def test_every_picture_and_depth_reader_has_a_hostile_header() -> None:
-    expected = [r.name for r in READERS if r.kind in ("picture", "depth")]
+def test_every_reader_of_pixels_has_a_hostile_header() -> None:
+    expected = [
+        r.name for r in READERS if r.kind in ("picture", "depth", "geometry", "illuminance")
+    ]
     assert list(HOSTILE) == expected
 
 

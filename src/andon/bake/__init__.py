@@ -26,10 +26,14 @@ irradiance volume, and bounces through it).
 
 from __future__ import annotations
 
-from andon.bake.bake import Baked, bake_probes
-from andon.bake.report import BakeReport
-from andon.bake.runner import Progress
-from andon.bake.to_file import Written, bake_file, placed_in
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from andon.bake.bake import Baked, bake_probes
+    from andon.bake.report import BakeReport
+    from andon.bake.runner import Progress
+    from andon.bake.to_file import Written, bake_file, placed_in
 
 __all__ = [
     "BakeReport",
@@ -40,3 +44,21 @@ __all__ = [
     "bake_probes",
     "placed_in",
 ]
+
+# Where each is: loaded when it is asked for, since workers that do `andon.bake.tasks` start often
+# and need none of it.
+_MODULES = {
+    "BakeReport": "report",
+    "Baked": "bake",
+    "Progress": "runner",
+    "Written": "to_file",
+    "bake_file": "to_file",
+    "bake_probes": "bake",
+    "placed_in": "to_file",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"module 'andon.bake' has no attribute {name!r}")
+    return getattr(import_module(f"andon.bake.{_MODULES[name]}"), name)

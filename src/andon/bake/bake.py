@@ -12,17 +12,20 @@ from numpy.typing import NDArray
 
 from andon.bake.journal import Journal, Result
 from andon.bake.places import far_m
+from andon.bake.radiance_bounces import bounce_notes, traced_light
 from andon.bake.report import BakeReport
 from andon.bake.runner import Progress, Runner
+from andon.bake.setting import passes_of, seen_setting, unscaled_of
 from andon.bake.task import PARTS, Look, Pictures, bounced, encoded, first_light
+from andon.bake.tasks import Workers
 from andon.engines.baked import dimming_of, facts_of
-from andon.engines.cubes import CubeSetting, cube_engine, cube_setting
+from andon.engines.cubes import cube_engine
+from andon.engines.cubes_radiance import check_radiance
 from andon.engines.digest import digest
 from andon.engines.photographless import white_cd_m2
-from andon.engines.prepared import prepare
 from andon.errors import InputError
 from andon.files.volumes import Cells, Distances, ProbeVolume, Zone
-from andon.harmonics import deringed
+from andon.harmonics import coefficient_count, deringed
 from andon.scene import Scene
 from andon.scene.probes import Probes
 from andon.surface.objects import joined
@@ -64,6 +67,7 @@ def bake_probes(
     engine: str = "auto",
     progress: Progress | None = None,
     folder: Path | None = None,
+    workers: Workers | None = None,
 ) -> Baked:
     """Captures the light at every placed probe.
 
@@ -75,6 +79,7 @@ def bake_probes(
     progress : called after each probe.
     folder : where finished results are kept, and looked for; whoever asked removes it. None:
         nowhere.
+    workers : trace the bounces by Radiance; None: this process does.
 
     Raises
     ------
@@ -84,7 +89,7 @@ def bake_probes(
         for probes that fail three times (the others are kept), for ``gpu`` without an adapter, and
         where SciPy is missing.
     """
-    return _Bake(scene, placed, engine, progress, Journal(folder)).run()
+    return _Bake(scene, placed, engine, progress, Journal(folder), workers).run()
 
 
 class _Bake:
@@ -95,23 +100,37 @@ class _Bake:
         engine: str,
         progress: Progress | None,
         journal: Journal,
+        workers: Workers | None,
     ) -> None:
-        self.scene, self.placed = scene, placed
+        self.scene, self.placed, self.workers = scene, placed, workers
         self.journal = journal
         self.runner = Runner(journal, placed.names, progress)
         self.probes = _table(scene)
         self.unlit = unlit_volume(scene, placed)
         self.cells = _cells(placed, self.unlit.zones)
-        self.setting = _setting(scene, placed)
+        self.setting = seen_setting(scene, placed)
         self.look = self._looking(self.probes.cube_size_px, engine)
         near = min(BOUNCE_SIZE, self.probes.cube_size_px)
         self.small = self.look if self.look is None else self._looking(near, self.look.engine.name)
         self.far_m = far_m(placed, self.cells, self.setting.geometry if self.setting else ())
         self.base = self._base()
         self.own = [index for index, p in enumerate(placed.panoramas) if p is None]
-        self.passes = _passes(self.setting, self.probes.bounces)
+        self.passes = passes_of(self.setting, self.probes.bounces)
+        self.by_radiance = self.probes.bounces_by == "radiance" and bool(self.own)
+        if self.by_radiance and self.setting is not None:
+            check_radiance(scene, self.setting)
+        elif workers is not None and self.probes.bounces_by == "probes":
+            raise InputError(
+                "is 'probes', and these bounces are not traced by workers",
+                file=scene.file,
+                field="probes.bounces_by",
+                remedy='set it to "radiance", or bake without workers',
+            )
         self.recoded = self.probes.encoding == "srgb8" and bool(self.own)
-        later = len(self.passes) + self.recoded
+        later = len(self.passes)
+        if self.by_radiance:
+            later = min(later, 1) * (1 if workers is None else 2)
+        later += self.recoded
         self.runner.total = placed.count + later * len(self.own)
 
     def run(self) -> Baked:
@@ -124,11 +143,11 @@ class _Bake:
         # What lights the first pass is what emits; where nothing does, what lamps light.
         light = emitted if 1 in self.passes else emitted + reflected
         lit_by: ProbeLight | None = None
-        for bounce in self.passes:
+        for bounce in () if self.by_radiance else self.passes:
             lit_by = self._probe_light(light, distances)
             light = emitted + reflected + self._bounce(bounce, lit_by)
-        if not self.passes:
-            light = emitted + reflected
+        if self.by_radiance or not self.passes:
+            light = emitted + reflected + self._radiance()
         coefficients = ambient + light
         recoded: list[Result] = []
         if self.recoded:
@@ -199,6 +218,22 @@ class _Bake:
         total[self.own] = [result["reflected"] for result in results]
         return total
 
+    def _radiance(self) -> Float:
+        """(n, k, 3) what Radiance finds around every probe; nothing around panoramas."""
+        total = np.zeros((self.placed.count, coefficient_count(self.probes.order), 3))
+        if self.by_radiance and self.passes:
+            assert self.small is not None
+            total[self.own] = traced_light(
+                self.runner,
+                self.small,
+                self.placed,
+                self.probes,
+                self.own,
+                self._first_key,
+                self.workers,
+            )
+        return total
+
     def _recode(self, light: ProbeLight | None) -> list[Result]:
         assert self.look is not None
         look, white, lit = self.look, self._white(), self.probes.bounces > 0
@@ -264,6 +299,7 @@ class _Bake:
             "encoding": probes.encoding,
             "solid_angle": probes.solid_angle,
             "bounces": str(probes.bounces),
+            **bounce_notes(probes),
             **self._facts(state),
         }
         return replace(
@@ -305,7 +341,7 @@ class _Bake:
             negative=int(sum(float(result["negative"]) for result in first)),
             unphotographed_share=self._mean(first, "unphotographed"),
             surroundings_share=self._mean(first, "surroundings"),
-            unscaled=_unscaled(self.probes),
+            unscaled=unscaled_of(self.probes),
             needs_white=self._needs_white(),
         )
 
@@ -340,39 +376,10 @@ def _table(scene: Scene) -> Probes:
     return scene.probes
 
 
-def _unscaled(probes: Probes) -> tuple[str, ...]:
-    """Panoramas of which nobody says how bright their 1 is."""
-    own = [p for p in probes.place if p.panorama and "luminance_per_unit" not in p.model_fields_set]
-    return tuple(dict.fromkeys(str(place.panorama) for place in own))
-
-
-def _passes(setting: CubeSetting | None, bounces: int) -> range:
-    """Bounces for which probes light surfaces: from 1 where something emits, else from 2."""
-    if setting is None or not (setting.emits or setting.lamps):
-        return range(0)
-    return range(1 if setting.emits else 2, bounces + 1)
-
-
 def _cells(placed: Placed, zones: tuple[Zone, ...]) -> Cells:
     from andon.transport.probes.cells import build_cells
 
     return build_cells(placed.positions, zones)
-
-
-def _setting(scene: Scene, placed: Placed) -> CubeSetting | None:
-    """What is seen; None where there is nothing, and all probes are panoramas."""
-    nothing = scene.surface is None and not scene.object
-    if nothing and all(panorama is not None for panorama in placed.panoramas):
-        return None
-    if scene.has_photograph and scene.ambient is not None and scene.ambient.probes:
-        raise InputError(
-            "is the light that a bake is to find",
-            file=scene.file,
-            field="ambient.probes",
-            remedy="bake a scene without [capture] source, with a surface.mesh and the lamps of "
-            "the photograph as [[lamp]]",
-        )
-    return cube_setting(scene, prepare(scene, drawn=False))
 
 
 def _bytes_of(path: Path) -> bytes:

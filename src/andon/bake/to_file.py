@@ -7,11 +7,13 @@ from pathlib import Path
 
 from andon.bake.bake import DEFAULT_STATE, bake_probes
 from andon.bake.journal import Journal
-from andon.bake.lock import locked
 from andon.bake.panoramas import check_panoramas
+from andon.bake.radiance_bounces import forget
 from andon.bake.report import BakeReport
 from andon.bake.runner import Progress
 from andon.bake.states import check_states, joined, planned
+from andon.bake.tasks import Workers
+from andon.bake.tasks.lock import locked
 from andon.engines.reading import read_pictures, view_of
 from andon.errors import InputError
 from andon.files.atomic import write_bytes
@@ -56,13 +58,15 @@ def bake_file(
     fresh: bool = False,
     replaces: bool = False,
     progress: Progress | None = None,
+    workers: Workers | None = None,
 ) -> Written:
     """Places and bakes the probes of `scene`, and writes the volume that it names.
 
     A volume of the same probes that is there keeps its other states; with other probes (places,
     order, zones) it is refused before anything is captured if it has other states, unless
     `replaces`, and is replaced if it has not. Results wait in ``<volume>.bake`` beside it until it
-    is written; with `fresh` those of an earlier bake are thrown away.
+    is written; with `fresh` those of an earlier bake are thrown away. `workers` trace bounces by
+    Radiance, see `bake_probes`.
 
     Raises `InputError` and `MachineError` as `bake_probes` does, where another bake of the volume
     is running, and where it cannot be written; what is there stays as it was then.
@@ -72,18 +76,22 @@ def bake_file(
     check_panoramas(scene, placed)
     plan = planned(scene, probes, placed, probes.state or DEFAULT_STATE)
     folder = path.with_name(path.name + ".bake")
-    with locked(folder):
+    with locked(folder, of="this volume", remedy="wait for it, or name another probes.volume"):
         check_states(path, plan, replaces=replaces)
         _check_folder(folder)
         journal = Journal(folder)
         if fresh:
             journal.clear()
-        baked = bake_probes(scene, placed, engine=engine, progress=progress, folder=folder)
+            forget(folder)
+        baked = bake_probes(
+            scene, placed, engine=engine, progress=progress, folder=folder, workers=workers
+        )
         # Once more: bakes wait for each other, but other programs may have put a file there.
         replaced = check_states(path, baked.volume, replaces=replaces)
         volume = joined(path, baked.volume)
         write_volume(path, volume)
         journal.clear()
+        forget(folder)
     return Written(
         path, baked.report, tuple(volume.states), replaced, placed.warnings, placed.tally
     )

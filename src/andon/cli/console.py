@@ -108,6 +108,9 @@ def print_report(
         table.add_row("depth", depth)
     for row in _rows_of_picture(report, pixels, has_photograph=white is None):
         table.add_row(*row)
+    if report.uncovered_share is not None:
+        share = f"{1 - report.uncovered_share:.1%}"
+        table.add_row("baked light", f"maps see {share} of the surface")
     if report.ignored_tables:
         table.add_row("not drawn", f"{', '.join(report.ignored_tables)} (later versions)")
     Console(stderr=True).print(table)

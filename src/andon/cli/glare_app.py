@@ -7,14 +7,10 @@ they do is imported when they run.
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
-
 import typer
-from typer.core import TyperGroup
 
 from andon.cli import glare, glare_figures, glare_komorebi, glare_psf
-from andon.errors import InputError, nearest_name
+from andon.cli.default_command import DefaultCommand
 
 __all__ = ["PICTURE", "glare_app"]
 
@@ -22,25 +18,8 @@ __all__ = ["PICTURE", "glare_app"]
 PICTURE = "picture"
 
 
-class _PictureFirst(TyperGroup):
-    """Takes what is no sub-command for the arguments of `PICTURE`."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        known = {*self.commands, *ctx.help_option_names}
-        if args and args[0] not in known:
-            self._refuse_misspelt(args[0])
-            args = [PICTURE, *args]
-        return super().parse_args(ctx, args)
-
-    def _refuse_misspelt(self, word: str) -> None:
-        """A word that is no picture's name, and nearly that of a sub-command."""
-        near = nearest_name(word, list(self.commands))
-        if near and not Path(word).suffix and not Path(word).exists():
-            raise InputError(
-                f"there is no command {word[:40]!r} and no picture of that name",
-                field="glare",
-                remedy=f"perhaps andon glare {near}",
-            )
+class _PictureFirst(DefaultCommand):
+    default, group, noun = PICTURE, "glare", "picture"
 
 
 glare_app = typer.Typer(

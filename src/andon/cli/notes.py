@@ -24,6 +24,8 @@ LARGE_LIFT_M = 0.02
 LIKELY_DEPTHS_M = (0.05, 200.0)
 # Of pixels at which a lamp's light is looked for first; all of them only where there is none.
 SPARSE = 7
+# Of the surface: smaller gaps lie along the rims of things, and nobody finds them.
+NOTABLE_UNCOVERED = 0.002
 # Fields of lamps that say how much light there is.
 LIGHT_UNITS = ("_cd", "_lux", "_cd_m2")
 
@@ -40,6 +42,7 @@ def notes_on(
         *_on_lamps(surface, prepared, time_seconds),
         *notes_on_bodies(surface, prepared.bodies(time_seconds), prepared.lamps(time_seconds)),
         *_on_lift(model),
+        *_on_baked(frame),
     ]
 
 
@@ -133,18 +136,18 @@ def _on_lamps(surface: Surface, prepared: Prepared, time_seconds: float) -> list
     probes have captured light what is lit by probes."""
     moment, probes = prepared.at(time_seconds), prepared.probes
     indirect: frozenset[str] = frozenset() if probes is None else probes.captured
-    lamps = [lamp for lamp in moment.lamps if lamp.owner not in prepared.sources]
+    lamps = [lamp for lamp in moment.direct_lamps if lamp.owner not in prepared.sources]
     lamps = [lamp for lamp in lamps if lamp.name not in indirect]
     if not lamps or not surface.valid.any():
         return []
     from andon.engines.reference import ReferenceEngine
 
-    engine = ReferenceEngine(prepared)
+    engine = ReferenceEngine(replace(prepared, baked=None))
     rows, columns = np.indices(surface.valid.shape)
     sparse = replace(surface, valid=surface.valid & ((rows + 3 * columns) % SPARSE == 0))
 
     def lights(lamp: Lamp) -> bool:
-        alone = replace(moment, lamps=(lamp,))
+        alone = replace(moment, direct_lamps=(lamp,))
         seen = (engine.illuminate(part, alone).lux for part in (sparse, surface))
         return any(bool((lux > 0).any()) for lux in seen)
 
@@ -168,6 +171,17 @@ def _why_dark(lamp: Lamp, lights: Any) -> str:
             return "all that faces it lies in shadow; move it, or state shadow = false"
     cone = " within its cone" if isinstance(lamp, SpotLamp) else ""
     return f"nothing that the camera sees faces it{cone}; move or turn it"
+
+
+def _on_baked(frame: Frame) -> list[str]:
+    """Surface that no illuminance map sees, where it is more than a rim here and there."""
+    baked = frame.baked
+    if baked is None or baked.uncovered_share < NOTABLE_UNCOVERED:
+        return []
+    return [
+        f"{baked.uncovered_share:.1%} of the surface is seen by no illuminance map and gets no "
+        "baked light: --uncovered shows where; another [[baked.camera]] sees it"
+    ]
 
 
 def _on_lift(model: SurfaceModel) -> list[str]:

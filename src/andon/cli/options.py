@@ -91,6 +91,10 @@ class RelightOptions:
         list[Path] | None,
         typer.Option("--illuminance-map", help="EXR: lux; PNG: false colours. May be repeated."),
     ] = None
+    uncovered: Annotated[
+        Path | None,
+        typer.Option(help="PNG: where no illuminance map of [baked] sees the surface, in magenta."),
+    ] = None
     seen: Annotated[
         Path | None,
         typer.Option(

@@ -7,16 +7,19 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from andon.cli.bar import Bar
 from andon.cli.console import Interrupted, note
 from andon.cli.options import EngineOption
 from andon.errors import InputError
 
 if TYPE_CHECKING:
     from andon.bake import BakeReport, Written
+    from andon.bake.tasks import Workers
     from andon.scene import Scene
 
 __all__ = ["bake"]
 
+BOUNCES_BY = ("probes", "radiance")
 # Names that a line lists before it goes on with "…".
 SHOWN_NAMES = 5
 # As in scene files.
@@ -29,6 +32,21 @@ def bake(
     state: Annotated[
         str | None,
         typer.Option(help="Name of the state that is baked; default: the scene's probes.state."),
+    ] = None,
+    bounces_by: Annotated[
+        str | None,
+        typer.Option(
+            help="What computes bounces: probes or radiance; default: the scene's "
+            "probes.bounces_by."
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(help="Processes that trace bounces by Radiance; default: this one alone."),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(help="Dask scheduler (tcp://host:8786) whose workers trace them instead."),
     ] = None,
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Forget what an interrupted bake has left.")
@@ -48,15 +66,22 @@ def bake(
         andon probes bake basic.toml
 
         andon probes bake basic-at-night.toml --state night
+
+        andon probes bake basic.toml --bounces-by radiance --workers 4
     """
     from andon.bake import bake_file
     from andon.scene import load_scene
 
-    loaded = _in_state(load_scene(scene), state)
+    loaded = _bounced_by(_in_state(load_scene(scene), state), bounces_by)
     try:
-        with _Bar() as bar:
+        with Bar("placing") as bar:
             written = bake_file(
-                loaded, engine=engine, fresh=fresh, replaces=replace, progress=bar.show
+                loaded,
+                engine=engine,
+                fresh=fresh,
+                replaces=replace,
+                progress=bar.show,
+                workers=_workers(workers, scheduler),
             )
     except KeyboardInterrupt:
         raise Interrupted("interrupted; run it again and it goes on") from None
@@ -81,25 +106,33 @@ def _in_state(scene: Scene, state: str | None) -> Scene:
     return scene.model_copy(update={"probes": probes})
 
 
-class _Bar:
-    """A progress bar on stderr, with the time left."""
+def _bounced_by(scene: Scene, how: str | None) -> Scene:
+    """The scene whose probes.bounces_by is that; None: its own."""
+    if how is None or scene.probes is None:
+        return scene
+    if how not in BOUNCES_BY:
+        raise InputError(
+            f"must be probes or radiance, got {how[:40]!r}",
+            field="--bounces-by",
+            remedy="for example --bounces-by radiance",
+        )
+    probes = scene.probes.model_copy(update={"bounces_by": how})
+    return scene.model_copy(update={"probes": probes})
 
-    def __enter__(self) -> _Bar:
-        from rich.console import Console
-        from rich.progress import Progress
 
-        console = Console(stderr=True)
-        # Where nobody looks at it, all that is left of a bar is an empty line.
-        self._bar = Progress(console=console, transient=True, disable=not console.is_terminal)
-        self._bar.start()
-        self._task = self._bar.add_task("placing", total=None)
-        return self
+def _workers(count: int | None, scheduler: str | None) -> Workers | None:
+    """Who traces; None: this process."""
+    from andon.bake.tasks import DaskWorkers, LocalWorkers
 
-    def show(self, done: int, of: int, what: str) -> None:
-        self._bar.update(self._task, completed=done, total=of, description=what)
-
-    def __exit__(self, *_: object) -> None:
-        self._bar.stop()
+    if count is not None and scheduler is not None:
+        raise InputError(
+            "excludes it", field="--workers", remedy="the scheduler knows its own; leave it out"
+        )
+    if count is not None and count < 1:
+        raise InputError(f"must be ≥ 1, got {count}", field="--workers")
+    if scheduler is not None:
+        return DaskWorkers(scheduler)
+    return None if count is None else LocalWorkers(count)
 
 
 def _notes(written: Written) -> list[str]:

@@ -11,6 +11,7 @@ from andon.cli.console import check_writable, note, print_report
 from andon.cli.options import RelightOptions
 from andon.cli.seen import check_seen, notes_on_seen, write_seen
 from andon.cli.typed import ASSUMED_AMBIENT_LUX, named_as_typed, scene_of
+from andon.cli.uncovered import check_uncovered, write_uncovered
 from andon.cli.without_photograph import refuse_photograph, white_text
 from andon.errors import InputError
 from andon.quantities import Illuminance, photometric
@@ -32,6 +33,7 @@ def run(options: RelightOptions) -> None:
     scene = scene_of(options)
     check_view(scene, options.view)
     check_seen(options.seen, scene)
+    check_uncovered(options.uncovered, scene)
     for path in _outputs(options):
         refuse_photograph(path, scene)
     with named_as_typed(options, len(scene.lamp) - len(options.lamps or ()), scene.file):
@@ -47,6 +49,8 @@ def run(options: RelightOptions) -> None:
         write_seen(options.seen, frame.seen)
     for path in options.illuminance_maps or ():
         write_illuminance(path, frame.illuminance, frame.surface.valid)
+    if options.uncovered is not None and frame.baked is not None:
+        write_uncovered(options.uncovered, frame.image.rgb, frame.baked)
     lines = notes_on_time(options.time_seconds, scene.scene.duration_seconds)
     about = notes_on(
         frame, renderer.prepared, options.time_seconds, has_photograph=scene.has_photograph
@@ -62,8 +66,8 @@ def run(options: RelightOptions) -> None:
 
 
 def _outputs(options: RelightOptions) -> list[Path]:
-    seen = [] if options.seen is None else [options.seen]
-    return [options.out, *(options.illuminance_maps or ()), *seen]
+    more = [path for path in (options.seen, options.uncovered) if path is not None]
+    return [options.out, *(options.illuminance_maps or ()), *more]
 
 
 def _refuse_overwriting(options: RelightOptions) -> None:

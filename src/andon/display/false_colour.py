@@ -8,7 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["GAP_PX", "contact_sheet", "depth_picture", "false_colour", "normal_picture"]
+__all__ = [
+    "GAP_PX",
+    "contact_sheet",
+    "depth_picture",
+    "false_colour",
+    "normal_picture",
+    "top_of",
+]
 
 Rgb = NDArray[np.uint8]
 
@@ -28,7 +35,12 @@ DECADES = 2.0
 
 
 def false_colour(
-    values: NDArray[Any], unit: str, /, *, valid: NDArray[np.bool_] | None = None
+    values: NDArray[Any],
+    unit: str,
+    /,
+    *,
+    valid: NDArray[np.bool_] | None = None,
+    top: float | None = None,
 ) -> Rgb:
     """(H, W + bar, 3) uint8: a logarithmic colour scale over two decades, with a labelled bar.
 
@@ -37,20 +49,24 @@ def false_colour(
     values : (H, W) ≥ 0, e.g. photometric illuminance in lx.
     unit : written at the bar.
     valid : (H, W); holes are dark grey.
+    top : the end of the scale, > 0, for pictures that share one; default: `top_of` the values.
     """
     import cv2
 
-    shown = values if valid is None else values[valid]
-    shown = shown[np.isfinite(shown)]
-    # The 99.5th percentile: one pixel under a bulb would else push the room into one colour.
-    top = float(np.percentile(shown, 99.5)) if shown.size else 1.0
-    top = _round_up(max(top, 1e-6))
+    top = top_of(values if valid is None else values[valid]) if top is None else top
     share = np.log10(np.maximum(values, 1e-12) / top) / DECADES + 1
     codes = (np.clip(np.nan_to_num(share), 0, 1) * 255).astype(np.uint8)
     picture = np.asarray(cv2.applyColorMap(codes, cv2.COLORMAP_INFERNO), np.uint8)[..., ::-1].copy()
     if valid is not None:
         picture[~valid] = HOLE
     return np.concatenate([picture, _bar(len(picture), top, unit)], axis=1)
+
+
+def top_of(values: NDArray[Any], /) -> float:
+    """Where a scale of these values ends: at the next 1, 2 or 5 × 10ⁿ."""
+    shown = values[np.isfinite(values)]
+    # The 99.5th percentile: one pixel under a bulb would else push the room into one colour.
+    return _round_up(max(float(np.percentile(shown, 99.5)) if shown.size else 1.0, 1e-6))
 
 
 def _round_up(value: float) -> float:

@@ -43,6 +43,8 @@ __all__ = [
     "cube_setting",
     "cube_views",
     "mirrored",
+    "photograph_of",
+    "states_reflectance",
 ]
 
 Float = NDArray[np.float64]
@@ -141,7 +143,7 @@ def cube_setting(scene: Scene, prepared: Prepared, /) -> CubeSetting:
             remedy="give a depth or a mesh",
         )
     moment = prepared.at(0.0)
-    lamps = lamps_in_probes(scene, moment.lamps)
+    lamps = lamps_in_probes(scene, moment.direct_lamps)
     lighting = _lighting(scene, prepared, lamps)
     # A material whose light the photograph shows emits nothing beside it.
     real = model.real if lighting.photograph is None else _without_materials(model.real)
@@ -162,8 +164,8 @@ def _lighting(scene: Scene, prepared: Prepared, lamps: Sequence[Lamp]) -> Lighti
     """All light but that of `lamps` that stand somewhere or are directional."""
     real, ambient = prepared.surface.real, prepared.ambient
     photograph = None
-    if prepared.frames and len(real.triangles) and not _states_reflectance(real):
-        photograph = _photograph(prepared)
+    if prepared.frames and len(real.triangles) and not states_reflectance(real):
+        photograph = photograph_of(prepared)
     lux: Float = np.asarray(ambient.dimming) * ambient.mean_lux
     if scene.ambient is None:  # then what stands for E0 is no light
         lux = np.zeros(3)
@@ -199,7 +201,7 @@ def cube_engine(setting: CubeSetting, size: int, /, engine: str = "auto") -> Cub
         return ReferenceCubes(setting, size)
 
 
-def _states_reflectance(real: Geometry) -> bool:
+def states_reflectance(real: Geometry, /) -> bool:
     """The mesh has materials of its own; readers give a nameless one where a file has none."""
     return any(material.name for material in real.materials)
 
@@ -208,7 +210,8 @@ def _without_materials(real: Geometry) -> Geometry:
     return Geometry(real.positions, real.triangles, real.normals)
 
 
-def _photograph(prepared: Prepared) -> Photograph:
+def photograph_of(prepared: Prepared, /) -> Photograph:
+    """The pictures of the views of `prepared`, looked up by points of the real surface."""
     pictures: list[Picture] = []
     for frame in prepared.frames.values():
         alone = replace(prepared.surface, objects=Geometry(np.zeros((0, 3)), _NONE))

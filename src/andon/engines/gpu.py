@@ -5,147 +5,31 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from andon import gbuffer
-from andon.composite import stage as composite
-from andon.composite.reference import unlit_linear
-from andon.display import ost
 from andon.display.model import Seen
 from andon.display.ost_stage import OstStage
 from andon.display.stage import DisplayStage
-from andon.engines.changes import Changes, Rectangle
-from andon.engines.glare_gpu import GlareView
-from andon.engines.glass_gpu import GlassBuffers, GlassView
+from andon.engines.glass_gpu import GlassBuffers
+from andon.engines.gpu_view import GpuView
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
 from andon.engines.probes import NO_LAMPS, PROBES, taking
 from andon.glare.highlights import stage as highlights
-from andon.glare.highlights.stage import HighlightStage
 from andon.glare.highlights.sum import highlights_of_lamps
 from andon.glass.layers import Layered
-from andon.glow.stage import GlowStage
-from andon.gpu.bindings import BindGroup, bind_group
-from andon.gpu.device import Gpu, open_gpu
-from andon.gpu.passes import FullscreenPass
+from andon.gpu.device import open_gpu
 from andon.gpu.textures import HALF_MOST, Texture, make_texture
+from andon.lamps import Lamp
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
-from andon.surface.model import SurfaceModel
-from andon.surface.stage import GpuSurface, SurfaceStage
+from andon.surface.stage import GpuSurface
+from andon.transport.baked.model import BakedSeen
+from andon.transport.baked.stage import BakedBuffers
 from andon.transport.direct import stage as direct
-from andon.transport.probes.stage import ProbeBuffers, ProbePicture
+from andon.transport.probes.stage import ProbeBuffers
 
 __all__ = ["GpuEngine"]
 
-FRAME = "andon/frame.wgsl"
 RECEIVERS = "andon/composite/receivers{}.wgsl"
-STRUCTS = gbuffer.STRUCTS | direct.STRUCTS | composite.STRUCTS
-
-
-class _View:
-    """Everything of one view that lives on the GPU; made once."""
-
-    def __init__(self, engine: GpuEngine, frame: CameraFrame) -> None:
-        gpu, prepared = engine.gpu, engine.prepared
-        self.frame = frame
-        self.has_lamps = False
-        view = frame.view
-        start = engine.start
-        self.surface = SurfaceStage(gpu, prepared.surface, view, start.bodies, start.movers)
-        seen = self.surface.surface
-        self.composite = composite.CompositeStage(
-            gpu,
-            view,
-            prepared.ambient,
-            seen.texture.view,
-            seen.view_buffer,
-            seen.emitted_cd_m2,
-            engine.taking,
-        )
-        self.composite.load(frame)
-        self.luminance = make_texture(gpu, "rgba16float", view.width, view.height, label="light")
-        self.glass: GlassView | None = None
-        if engine.glass is not None:
-            lit = self.composite.resources, engine.direct
-            self.glass = GlassView(gpu, engine.glass, frame, seen, self.luminance, lit)
-        self.glow: GlowStage | None = None
-        if prepared.glow is not None:
-            alone = self.composite.lamps.alone
-            self.glow = GlowStage(gpu, alone, self.luminance, prepared.glow, view)
-            self.filtered = make_texture(gpu, alone.format, view.width, view.height, label="glow")
-            self.hide = None if self.glass is None else self.glass.hiding(alone)
-        own = {0: ("uint", seen.texture.view), 1: ("uniform", seen.view_buffer)}
-        groups = [
-            bind_group(gpu, own | self.composite.resources, "frame"),
-            engine.direct.group,
-        ]
-        self.probes: ProbePicture | None = None
-        if engine.probes is not None:
-            self.probes = ProbePicture(engine.probes, view, seen.texture.view, seen.view_buffer)
-            self._changes = Changes(view, _standing_in_probes(prepared.surface))
-            groups.append(bind_group(gpu, {0: ("float", self.probes.lux.view)}, "probes"))
-        options: dict[str, Any] = {
-            "structs": STRUCTS,
-            "variants": gbuffer.projection_variant(view) | engine.variants,
-        }
-        self._make_highlights(engine, groups, options["variants"])
-        self._make_display(gpu, prepared)
-        entry = self._entry_point(prepared)
-        self.relit = FullscreenPass(gpu, FRAME, entry, ["rgba16float"], groups, **options)
-        # Half floats end at 65504, sunlight does not, and this picture is for machines.
-        self.lux_map = make_texture(gpu, "rgba32float", view.width, view.height, label="lux")
-        self.lux = FullscreenPass(
-            gpu, FRAME, "illuminance_map", [self.lux_map.format], groups, **options
-        )
-
-    def _make_display(self, gpu: Gpu, prepared: Prepared) -> None:
-        """Glare, and the display of what it leaves."""
-        frame = self.frame
-        self.glare: GlareView | None = None
-        shown, through = self.luminance, prepared.exposure.see_through
-        unlit = None if through is None else unlit_linear(frame, prepared.ambient)
-        if prepared.glare is not None:
-            real = None if through is None or unlit is None else ost.real_light(unlit, through)
-            hiding = prepared.surface.shadow_casters
-            mirrored = None if self.highlights is None else self.highlights.alone
-            light = self.luminance
-            self.glare = GlareView(gpu, prepared.glare, frame, light, hiding, real, mirrored)
-            shown = self.glare.seen
-        self.display: DisplayStage | OstStage
-        if unlit is not None:
-            self.display = OstStage(gpu, shown, frame, prepared.exposure, unlit)
-        else:
-            self.display = DisplayStage(
-                gpu, shown, frame.response, prepared.exposure, frame.luminance_per_unit
-            )
-
-    def _make_highlights(
-        self, engine: GpuEngine, groups: list[BindGroup], variants: dict[str, str]
-    ) -> None:
-        self.highlights: HighlightStage | None = None
-        if engine.finishes is None:
-            return
-        gpu, frame = engine.gpu, self.frame
-        own = engine.finishes, groups, STRUCTS, variants | {highlights.SUM: engine.lamps_mirrored}
-        self.highlights = highlights.HighlightStage(gpu, frame.view, *own)
-
-    def changed_rectangles(self, moment: Moment) -> list[Rectangle]:
-        """Where the light of probes has to be drawn anew: all of it once, then what moved."""
-        bodies = [body.geometry for body in moment.bodies]
-        return self._changes.since_last([*moment.movers, *bodies])
-
-    def _entry_point(self, prepared: Prepared) -> str:
-        if self.composite.has_maps:
-            return "relit_with_maps"
-        has_objects = prepared.surface.has_objects or self.surface.has_bodies
-        return "relit_with_objects" if has_objects else "relit"
-
-
-def _standing_in_probes(model: SurfaceModel) -> list[NDArray[np.float64]]:
-    """(n, 3) corners of each object that stands still and is lit by probes."""
-    still = model.objects_table[: len(model.objects_table) - len(model.movers)]
-    lit = [number for number, info in enumerate(still) if info.lit_by_probes]
-    return [model.corners_of(number).reshape(-1, 3) for number in lit]
 
 
 class GpuEngine:
@@ -168,14 +52,20 @@ class GpuEngine:
         if probes is not None and (self.taking & PROBES).any():
             slots = prepared.surface.object_of_slot
             self.probes = ProbeBuffers(self.gpu, probes.dimmed, probes.lookup, slots)
+        captured = frozenset[str]() if probes is None else probes.captured
+        self.baked: BakedBuffers | None = None
+        if prepared.baked is not None:
+            self.baked = BakedBuffers(self.gpu, prepared.baked.light)
         self.direct = direct.DirectStage(
             self.gpu,
             prepared.casters(self.start),
-            self.start.lamps,
+            self._lamps(self.start),
             [body.name for body in self.start.bodies],
             bias_real_m=bias.real_m,
             bias_object_m=bias.object_m,
-            captured=frozenset() if probes is None else probes.captured,
+            captured=captured,
+            silent=frozenset(lamp.name for lamp in self.start.lamps)
+            - frozenset(lamp.name for lamp in self.start.direct_lamps),
             balls=prepared.balls,
         )
         self.finishes: highlights.FinishBuffers | None = None
@@ -187,16 +77,31 @@ class GpuEngine:
                 terms=self.direct.terms,
                 softening=self.direct.softening,
                 edges=self.direct.areas.edges,
-                captured=frozenset() if probes is None else probes.captured,
+                captured=captured,
             )
         self.glass: GlassBuffers | None = None
         if prepared.glass is not None:
             white = next(iter(prepared.frames.values())).luminance_per_unit
             self.glass = GlassBuffers(self.gpu, prepared.glass, white)
-        self.variants = self.direct.variants | self._receivers()
-        self._views = {name: _View(self, frame) for name, frame in prepared.frames.items()}
+        self.variants = self.direct.variants | self._receivers() | self._baked_light()
+        self._views = {name: GpuView(self, frame) for name, frame in prepared.frames.items()}
         self._encoder: Any = None
         self.maps_redrawn = 0
+
+    def _lamps(self, moment: Moment) -> tuple[Lamp, ...]:
+        """Those whose shadows are looked up: what is baked as a whole only where it is mirrored."""
+        return moment.direct_lamps if self.prepared.highlights is None else moment.lamps
+
+    def _baked_light(self) -> dict[str, str]:
+        """Shaders for baked light, and for who takes it."""
+        own = self.prepared.baked
+        if own is None:
+            return {}
+        folder = "andon/transport/baked"
+        found = {f"{folder}/none.wgsl": f"{folder}/picture_light.wgsl"}
+        if own.in_probes:
+            found[f"{folder}/refusing.wgsl"] = f"{folder}/refusing_probes.wgsl"
+        return found
 
     def _receivers(self) -> dict[str, str]:
         """Shaders for what light the virtual objects take."""
@@ -217,19 +122,22 @@ class GpuEngine:
         stage = self._views[view_name].surface
         return stage.encode(self.encoder, moment.bodies, moment.movers)
 
-    def illuminate(self, seen: GpuSurface, moment: Moment) -> _View:
+    def illuminate(self, seen: GpuSurface, moment: Moment) -> GpuView:
         """Brings shadow maps and lamps up to date; shared by both eyes."""
         casters = self.prepared.casters(moment)
-        self.maps_redrawn = self.direct.encode(self.encoder, moment.lamps, casters)
+        self.maps_redrawn = self.direct.encode(self.encoder, self._lamps(moment), casters)
         return self._views[seen.view.name]
 
     def compose(
-        self, frame: CameraFrame, seen: GpuSurface, light: _View, moment: Moment
+        self, frame: CameraFrame, seen: GpuSurface, light: GpuView, moment: Moment
     ) -> Texture:
         """Records direct light and composite in one pass, then the visible lamps."""
         if self.probes is not None and light.probes is not None:
             self.probes.move(moment.object_middles)
             light.probes.encode(self.encoder, light.changed_rectangles(moment))
+        if light.baked is not None:
+            changed = light.has_moved(moment)
+            light.baked.encode(self.encoder, moment.time_seconds, changed=changed)
         light.relit.encode(self.encoder, [light.luminance.view])
         own = self.prepared.highlights
         if own is not None and self.finishes is not None and light.highlights is not None:
@@ -246,6 +154,16 @@ class GpuEngine:
         if stage is None:
             return None
         return Luminance(stage.alone.read()[..., :3], self.prepared.photometry)
+
+    def read_baked(self, surface: Surface, moment: Moment) -> BakedSeen | None:
+        """What the illuminance maps gave to the view that was drawn last, and `surface` is of."""
+        picture, own = self._views[surface.view.name].baked, self.prepared.baked
+        if picture is None or own is None:
+            return None
+        values = picture.lux.read()
+        asked = own.asked(surface, self.prepared.surface)
+        covered = asked & (values[..., 3] > 0.5)
+        return BakedSeen(np.where(covered[..., None], values[..., :3], 0.0), covered, asked)
 
     def glass_over(
         self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, moment: Moment
@@ -318,7 +236,7 @@ class GpuEngine:
         self.gpu.wait()
 
     def read(
-        self, seen: GpuSurface, light: _View, luminance: Texture, image: DisplayStage | OstStage
+        self, seen: GpuSurface, light: GpuView, luminance: Texture, image: DisplayStage | OstStage
     ) -> tuple[Surface, Illuminance, Luminance, DisplayImage]:
         """The quantities as arrays; draws the illuminance map, which no frame needs."""
         light.lux.encode(self.encoder, [light.lux_map.view])

@@ -22,6 +22,7 @@ class Moment:
     ----------
     time_seconds : since the start of the session.
     lamps : always the same names and kinds.
+    direct_lamps : those of them whose direct light is computed; of the others it is baked.
     bodies : luminous bodies; always the same names and triangles.
     movers : virtual objects that move, in the order of `SurfaceModel.movers`; always the same
         triangles and materials.
@@ -36,3 +37,4 @@ class Moment:
     movers: tuple[Geometry, ...] = ()
     object_middles: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 3)))
     focus: Focus | None = None
+    direct_lamps: tuple[Lamp, ...] = ()

@@ -10,6 +10,7 @@ import numpy as np
 from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
 from andon.display.model import Exposure
+from andon.engines.baked_light import SceneBaked, baked_of, check_counted_once, undirected
 from andon.engines.checks import check_lamps
 from andon.engines.glare import SceneGlare, glare_of, with_clipped_light
 from andon.engines.glass import SceneGlass, glass_of
@@ -46,7 +47,7 @@ from andon.transport.direct.casters import MOVERS, OBJECTS, REAL, Casters
 __all__ = ["Prepared", "prepare"]
 
 # Tables and keys that the schema has and this version does not draw; a frame says so.
-LATER_TABLES = ("baked",)
+LATER_TABLES: tuple[str, ...] = ()
 
 LATER_KEYS = {
     "surface": ("response", "reflectance_map"),
@@ -90,6 +91,8 @@ class Prepared:
     glass : transparent bodies and what the eyes are focused on, or None.
     balls : those of them in whose shadow and caustic surfaces stand.
     highlights : how virtual objects mirror, or None: nothing does.
+    baked : illuminance maps, or None: there are none, or nobody asks for them.
+    undirected : lamps of the scene whose direct light is not computed, since it is in the maps.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -107,18 +110,22 @@ class Prepared:
     balls: tuple[GlassBall, ...] = ()
     glare: SceneGlare | None = None
     highlights: SceneHighlights | None = None
+    baked: SceneBaked | None = None
+    undirected: frozenset[str] = frozenset()
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
         movers = tuple(mover.at(time_seconds) for mover in self.surface.movers)
         moving = np.array([mover.middle for mover in self.surface.movers])
+        lamps = self.lamps(time_seconds)
         return Moment(
             time_seconds,
-            self.lamps(time_seconds),
+            lamps,
             self.bodies(time_seconds),
             movers,
             np.concatenate([self.surface.still_middles, moving.reshape(-1, 3)]),
             None if self.glass is None else self.glass.focus(time_seconds),
+            tuple(lamp for lamp in lamps if lamp.owner not in self.undirected),
         )
 
     def casters(self, moment: Moment) -> Casters:
@@ -135,11 +142,12 @@ class Prepared:
         return Casters(tuple(groups))
 
 
-def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
+def prepare(scene: Scene, /, *, drawn: bool = True, maps: bool = True) -> Prepared:
     """Reads all that `scene` names. Raises `InputError` for whatever does not fit.
 
     With `drawn` False there are no frames where there is no photograph, and neither rig, white nor
-    a volume of probes are needed: for whoever makes light, as bakes do. Then no lamp flickers.
+    a volume of probes are needed: for whoever makes light, as bakes do. Then no lamp flickers. With
+    `maps` False the folder of [baked] is not read: for whoever fills it.
     """
     scene = scene if drawn else scene.steady()
     probes, notes = probes_of(scene) if drawn else (None, ())
@@ -150,7 +158,11 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
     if frames:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
-    notes = (*notes, *changed_since_bake(scene, probes, surface, ambient, lamps))
+    baked, about_maps = (
+        baked_of(scene, surface, lamps, has_probes=probes is not None) if maps else (None, ())
+    )
+    check_counted_once(scene, probes, surface)
+    notes = (*notes, *changed_since_bake(scene, probes, surface, ambient, lamps), *about_maps)
     glass = glass_of(scene, frames, surface, ambient, lamps, probes) if frames else None
     return Prepared(
         frames=frames,
@@ -171,6 +183,8 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         balls=() if glass is None else glass.balls,
         glare=glare_of(scene, frames, np.asarray(ambient.dimming)) if frames else None,
         highlights=highlights_of(scene, surface),
+        baked=baked,
+        undirected=undirected(scene),
     )
 
 

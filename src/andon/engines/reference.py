@@ -32,6 +32,7 @@ from andon.glow import reference as glow
 from andon.lamps import AreaLamp, Lamp
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface import reference as surface
+from andon.transport.baked.model import BakedSeen
 from andon.transport.direct import reference as direct
 from andon.transport.direct.casters import ShadowRays
 
@@ -59,6 +60,7 @@ class ReferenceEngine:
         self._glare: Luminance | None = None
         self._unpictured = UnpicturedLamps(prepared.surface.shadow_casters)
         self._mirrored: Mirrored | None = None
+        self._baked: BakedSeen | None = None
         self._blurred: tuple[float, GlassModel | None] = (0.0, None)
         self.maps_redrawn = 0
 
@@ -81,9 +83,18 @@ class ReferenceEngine:
         names = [body.name for body in moment.bodies]
         balls = self.prepared.balls
         lux = direct.illuminate(
-            seen, moment.lamps, self._rays, bias_m=bias_m, bodies=names, balls=balls
+            seen, moment.direct_lamps, self._rays, bias_m=bias_m, bodies=names, balls=balls
         )
-        return Illuminance(self._received(seen, lux, moment), self.prepared.photometry)
+        lux = self._received(seen, lux, moment)
+        own = self.prepared.baked
+        if own is not None:
+            self._baked = own.seen(seen, self.prepared.surface, moment.time_seconds)
+            lux = lux + self._baked.lux
+        return Illuminance(lux, self.prepared.photometry)
+
+    def read_baked(self, surface: Surface, moment: Moment) -> BakedSeen | None:
+        """What the illuminance maps gave to the view that was drawn last."""
+        return self._baked
 
     def _received(self, seen: Surface, lux: Float, moment: Moment) -> Float:
         """What objects take of `lux`: of those that lamps do not light nothing, and of those that
@@ -92,7 +103,7 @@ class ReferenceEngine:
         model, probes = self.prepared.surface, self.prepared.probes
         if probes is not None:
             lit = lit_pixels(seen, model)
-            for lamp in moment.lamps:
+            for lamp in moment.direct_lamps:
                 if lamp.name in probes.captured:
                     lux[lit] -= direct.illuminance(lamp, seen.position[lit], seen.normal[lit])
         lux[lampless_pixels(seen, model)] = 0
@@ -198,11 +209,11 @@ class ReferenceEngine:
             row = Surface.of_points(points[part] + OFF_GLASS_M * normals[part], normals[part])
             bias_m = np.full(row.view.shape, self.prepared.surface.bias.object_m)
             lux[part] = direct.illuminate(
-                row, moment.lamps, self._rays, bias_m=bias_m, balls=self.prepared.balls
+                row, moment.direct_lamps, self._rays, bias_m=bias_m, balls=self.prepared.balls
             )[0]
         probes = self.prepared.probes
         captured = frozenset[str]() if probes is None else probes.captured
-        for lamp in moment.lamps:
+        for lamp in moment.direct_lamps:
             if lamp.name in captured:
                 lux -= direct.illuminance(lamp, points, normals)
         return lux

@@ -23,10 +23,21 @@ def package_folder() -> Path:
     return Path(spec.origin).parent
 
 
-def run_radiance(program: str, arguments: list[str], feed: bytes, limit: float) -> bytes:
+def run_radiance(
+    program: str, arguments: list[str], feed: bytes, limit: float, *, cwd: Path | None = None
+) -> bytes:
     """What one of Radiance's programs answers to `feed`.
 
-    Raises `MachineError` if it is missing, fails or takes more than `limit` seconds.
+    Parameters
+    ----------
+    program : its name, without a path.
+    arguments : of its command line.
+    feed : its standard input.
+    limit : seconds that it may take.
+    cwd : where it runs and looks for files without a path, before Radiance's own; None: here, and
+        it finds Radiance's own alone.
+
+    Raises `MachineError` if it is missing, cannot be started, fails or takes too long.
     """
     folder = package_folder()
     path = shutil.which(program, path=str(folder / "bin"))
@@ -34,17 +45,35 @@ def run_radiance(program: str, arguments: list[str], feed: bytes, limit: float) 
         raise MachineError(
             f"Radiance's {program} is not in {folder / 'bin'}", remedy=_INSTALL_REMEDY
         )
-    environment = dict(os.environ, RAYPATH=str(folder / "lib"))
     try:
         done = subprocess.run(
-            [path, *arguments], input=feed, capture_output=True, env=environment, timeout=limit
+            [path, *arguments],
+            input=feed,
+            capture_output=True,
+            env=_environment(folder, cwd),
+            timeout=limit,
+            cwd=cwd,
         )
     except subprocess.TimeoutExpired as error:
         raise MachineError(
             f"Radiance's {program} took more than {limit:g} s", remedy="ask for fewer points"
         ) from error
+    except OSError as error:
+        raise MachineError(f"Radiance's {program} cannot be started: {error}") from error
     if done.returncode != 0:
-        lines = done.stderr.decode(errors="replace").split("\n")
-        message = " ".join(line.strip() for line in lines if line.strip())
-        raise MachineError(f"Radiance's {program} failed ({done.returncode}): {message[:300]}")
+        raise MachineError(f"Radiance's {program} {_how_it_ended(done.returncode, done.stderr)}")
     return done.stdout
+
+
+def _environment(folder: Path, cwd: Path | None) -> dict[str, str]:
+    # Radiance looks for names without a path in RAYPATH alone, so "." has to be named.
+    path = [str(folder / "lib")] if cwd is None else [".", str(folder / "lib")]
+    return dict(os.environ, RAYPATH=os.pathsep.join(path))
+
+
+def _how_it_ended(code: int, errors: bytes) -> str:
+    if code < 0:
+        return f"was killed by signal {-code}"
+    lines = errors.decode(errors="replace").split("\n")
+    message = " ".join(line.strip() for line in lines if line.strip())
+    return f"failed ({code}): {message[:300]}"

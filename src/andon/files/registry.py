@@ -14,9 +14,11 @@ from andon.files.depth import DEPTH_READERS
 from andon.files.exposures import EXPOSURE_READERS
 from andon.files.gaps import GAP_READERS
 from andon.files.gaze import GAZE_READERS
+from andon.files.illuminance_maps import ILLUMINANCE_MAP_READERS
 from andon.files.meshes import MESH_READERS
 from andon.files.photometry import PHOTOMETRY_READERS
 from andon.files.pictures import PICTURE_READERS
+from andon.files.radiance_text import RADIANCE_READERS
 from andon.files.reader import Reader, choose_reader
 from andon.files.responses import RESPONSE_READERS
 from andon.files.volumes import VOLUME_READERS
@@ -34,6 +36,10 @@ Kind = Literal[
     "exposures",
     "gaze",
     "gaps",
+    "maps",
+    "geometry",
+    "illuminance",
+    "radiance",
 ]
 
 READERS: tuple[Reader, ...] = (
@@ -47,6 +53,8 @@ READERS: tuple[Reader, ...] = (
     *EXPOSURE_READERS,
     *GAZE_READERS,
     *GAP_READERS,
+    *ILLUMINANCE_MAP_READERS,
+    *RADIANCE_READERS,
 )
 
 

@@ -177,8 +177,8 @@ def _refuse_later(scene: Scene, place: str, table: AnyLamp) -> None:
             remedy="leave it out",
         )
     faults = {key: remedy for key, remedy in _LATER.items() if getattr(table, key, None)}
-    if table.transport != "direct":
-        faults["transport"] = "use 'direct'"
+    if table.transport != "direct" and place.startswith("ambient."):
+        faults["transport"] = "leave it out: the photograph has its light already"
     for key, remedy in faults.items():
         if remedy:
             value = getattr(table, key)

@@ -1,4 +1,4 @@
-"""A task: a function of files and settings whose result is one file, named by what it depends on."""
+"""A task: a function of files and settings; its result is one file, named by what it depends on."""
 
 from __future__ import annotations
 

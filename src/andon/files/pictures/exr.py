@@ -80,14 +80,25 @@ def read_exr(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> Picture:
     return Picture(part.placed(values, 0.0), "linear", attributes=part.attributes, alpha=alpha)
 
 
-def read_exr_part(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> ExrPart:
-    """The first part of an EXR file, all its channels as float32."""
+def read_exr_part(
+    path: str | Path,
+    *,
+    limits: Limits = DEFAULT_LIMITS,
+    shape: tuple[int, int] | None = None,
+) -> ExrPart:
+    """The first part of an EXR file, all its channels as float32.
+
+    Another display or data window than `shape` (H, W) is refused before pixels are decoded.
+    """
     check_file(path, limits)
     with Path(path).open("rb") as stream:
         if stream.read(4) != MAGIC:
             raise InputError("must be an OpenEXR file", file=path)
     header = _open(path, header_only=True).header
-    origin, shape, window = _check_header(header, path, limits)
+    origin, display, window = _check_header(header, path, limits)
+    if shape is not None and not shape == display == window:
+        height, width = window if display == shape else display
+        raise InputError(f"must have {shape[1]}×{shape[0]} pixels, has {width}×{height}", file=path)
     part = _open(path, header_only=False)
     channels: dict[str, NDArray[np.float32]] = {}
     for name, channel in part.channels.items():
@@ -104,7 +115,7 @@ def read_exr_part(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) -> ExrPa
     }
     if "envmap" in header:
         attributes["envmap"] = _envmap(header["envmap"])
-    return ExrPart(channels, origin, shape, attributes, _chromaticities(header, path))
+    return ExrPart(channels, origin, display, attributes, _chromaticities(header, path))
 
 
 def _chromaticities(header: dict[str, Any], path: str | Path) -> tuple[float, ...] | None:

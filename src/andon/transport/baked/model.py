@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from andon.quantities import Photometry
 from andon.spaces import View
 
-__all__ = ["BakedLight", "BakedMoment", "IlluminanceMap", "Mode", "Part"]
+__all__ = ["BakedLight", "BakedMoment", "BakedSeen", "IlluminanceMap", "Mode", "Part"]
 
 Float = NDArray[np.floating[Any]]
 
@@ -91,3 +91,30 @@ class BakedLight:
             return later, later, 0.0
         span = times[later] - times[later - 1]
         return later - 1, later, float((time_seconds - times[later - 1]) / span)
+
+
+@dataclass(frozen=True, eq=False)
+class BakedSeen:
+    """What baked light a view sees.
+
+    Attributes
+    ----------
+    lux : (H, W, 3) lx; 0 where no map is valid.
+    covered : (H, W) a map is valid there.
+    asked : (H, W) pixels that take baked light: surfaces, but no luminous bodies.
+    """
+
+    lux: Float
+    covered: NDArray[np.bool_]
+    asked: NDArray[np.bool_]
+
+    @property
+    def uncovered(self) -> NDArray[np.bool_]:
+        """(H, W) pixels that should have baked light, and that no map sees."""
+        return self.asked & ~self.covered
+
+    @property
+    def uncovered_share(self) -> float:
+        """Of all pixels that take baked light."""
+        count = int(np.count_nonzero(self.asked))
+        return float(np.count_nonzero(self.uncovered) / count) if count else 0.0

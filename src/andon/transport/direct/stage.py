@@ -58,6 +58,7 @@ class DirectStage:
         bias_real_m: float,
         bias_object_m: float,
         captured: Set[str] = frozenset(),
+        silent: Set[str] = frozenset(),
         balls: Sequence[GlassBall] = (),
     ) -> None:
         self.gpu = gpu
@@ -80,6 +81,7 @@ class DirectStage:
             soft_map_size=self.soft.size,
             triangles=len(self.casters.triangles),
             captured=captured,
+            silent=silent,
         )
         self.terms = lamp_terms(lamps, self.maps.layers, luminaires.tables)
         self.softening = softenings(lamps, self.soft.firsts)

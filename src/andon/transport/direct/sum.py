@@ -28,6 +28,7 @@ def sum_of_lamps(
     soft_map_size: int,
     triangles: int,
     captured: Set[str] = frozenset(),
+    silent: Set[str] = frozenset(),
 ) -> str:
     """The module that stands in for sum.wgsl.
 
@@ -39,6 +40,7 @@ def sum_of_lamps(
     tables : lamp name → first value, rows and columns of a luminaire's distribution.
     triangles : how many cast shadows.
     captured : names of sky and hemisphere lamps whose light probes hold.
+    silent : names of lamps that are not in the sum: their light is baked.
     """
     lines = [
         f"const MAP_SIZE: f32 = {float(map_size)};",
@@ -47,17 +49,16 @@ def sum_of_lamps(
         "fn illuminance(position: vec3f, normal: vec3f, bias: f32, body: u32) -> vec3f {",
         "  var total = vec3f(0.0);",
     ]
-    for number, lamp in enumerate(lamps):
+    summed = [(n, lamp) for n, lamp in enumerate(lamps) if lamp.name not in silent]
+    for number, lamp in summed:
         if not isinstance(lamp, AnyAreaLamp):
             lines.append(f"  total += {_term(number, lamp, layers, tables)};")
-    areas = [(n, lamp) for n, lamp in enumerate(lamps) if isinstance(lamp, AnyAreaLamp)]
+    areas = [(n, lamp) for n, lamp in summed if isinstance(lamp, AnyAreaLamp)]
     if areas:
         lines += _areas(areas, bodies, samples, edges)
     lines += ["  return total;", "}", "fn captured_lux(normal: vec3f) -> vec3f {"]
     terms = [
-        _term(number, lamp, layers, tables)
-        for number, lamp in enumerate(lamps)
-        if lamp.name in captured
+        _term(number, lamp, layers, tables) for number, lamp in summed if lamp.name in captured
     ]
     return "\n".join([*lines, f"  return {' + '.join(['vec3f(0.0)', *terms])};", "}"])
 

@@ -1,0 +1,158 @@
+"""Illuminance and luminance by `rtrace`, the same to the last bit in every run.
+
+::
+
+    all points ──scene.oct, -ab 0──────────────────────▶ straight from lamps ──┐
+                                                                               + ──▶ lux
+    some points ──bounce.oct, -ab N less -ab 0──▶ reflected ──smoothed to all──┘
+
+W/m² of each channel times 179 are lux. The program runs in the folder, so that the scene's files
+have names without a path. One process computes in one order, and random numbers begin alike; what
+else runs on the machine does not matter. Which points are asked together does: they are each
+other's neighbours.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.errors import InputError, MachineError
+from andon.files.radiance_programs import run_radiance
+from andon.transport.baked.model import Part
+from andon.transport.baked.radiance.quality import FEW_POINTS, Quality
+from andon.transport.baked.radiance.smoothing import chosen_points, smoothed
+
+__all__ = ["traced_illuminance", "traced_luminance"]
+
+Float = NDArray[np.float64]
+
+# What `radiance_bundle` makes: lamps in all detail, and of few tiles for what is reflected.
+OCTREE, BOUNCES = "scene.oct", "bounce.oct"
+# Radiance's own luminous efficacy, lm/W, applied channel by channel.
+LUMENS_PER_WATT = 179.0
+# What is the same in every quality. Every lamp is tested (-dt, -dc), at its centre (-dj); there are
+# no mirrors, so no virtual lamps (-dr). One process, and random numbers that begin alike: with -u+,
+# the default, the clock chooses them.
+FIXED = ("-h", "-w", "-fdd", "-n", "1", "-u-", "-dt", "0", "-dc", "1", "-dj", "0", "-dr", "0")
+
+
+def traced_illuminance(
+    folder: Path,
+    position: NDArray[Any],
+    normal: NDArray[Any],
+    /,
+    *,
+    quality: Quality,
+    bounces: int,
+    part: Part = "all",
+    direct_bounces: int = 0,
+    time_limit_seconds: float = 3600.0,
+) -> NDArray[np.float32]:
+    """(n, 3) lux on surfaces at `position` (n, 3) metres that face `normal` (n, 3).
+
+    Parameters
+    ----------
+    folder : with the octrees ``scene.oct`` and ``bounce.oct``, and the files that they name.
+    position, normal : finite; normals of any length but 0. Light is measured 0.1 mm above. From
+        1000 points on they are smoothed as parts of one picture.
+    bounces : how often surfaces reflect the light, ≥ 0.
+    part : "all", or "bounce": all less the light that comes straight from the lamp.
+    direct_bounces : ``-ab`` at which the lamp's own light is complete: 0, but 1 of a sky of glow,
+        which rays of the hemisphere find: the scene must have no other lamps then.
+    time_limit_seconds : for each run of `rtrace`.
+
+    Raises
+    ------
+    InputError : points or normals that are no such arrays, bounces < 0.
+    MachineError : Radiance's programs are missing, fail, take too long or answer nonsense.
+    """
+    places, facing = _triples(position, "position"), _directions(normal, "normal")
+    _check(places, facing, "normal", bounces)
+    rays, count = np.concatenate([places, facing], axis=1), quality.traced(len(places))
+    chosen = chosen_points(places, facing, count)
+    alone = count < FEW_POINTS
+
+    def ask(octree: str, asked: Float, most: int) -> Float:
+        words = ["-I", *FIXED, *quality.options(most, alone=alone)]
+        return _traced(folder, words, asked, time_limit_seconds, octree)
+
+    # What lamps give by themselves, if `rtrace` finds them everywhere without chance.
+    has_exact = part == "all" and not direct_bounces
+    result = ask(OCTREE, rays, 0) if has_exact else np.zeros_like(places)
+    if bounces or (direct_bounces and part == "all"):
+        found = ask(BOUNCES, rays[chosen], bounces + direct_bounces)
+        if part == "bounce" or not direct_bounces:
+            found -= ask(BOUNCES, rays[chosen], direct_bounces)
+        found = np.maximum(found, 0)  # a difference's rounding
+        if not alone:
+            found = smoothed(places, facing, chosen, found, neighbours=quality.neighbours)
+        result = result + found
+    return result.astype(np.float32)
+
+
+def traced_luminance(
+    folder: Path,
+    origins: NDArray[Any],
+    directions: NDArray[Any],
+    /,
+    *,
+    quality: Quality,
+    bounces: int,
+    time_limit_seconds: float = 3600.0,
+) -> NDArray[np.float32]:
+    """(n, 3) cd/m² that arrive at `origins` (n, 3) metres from `directions` (n, 3), lamps included.
+
+    Parameters and errors as in `traced_illuminance`.
+    """
+    places, looking = _triples(origins, "origins"), _directions(directions, "directions")
+    _check(places, looking, "directions", bounces)
+    rays = np.concatenate([places, looking], axis=1)
+    words = [*FIXED, *quality.options(bounces, alone=True)]
+    return _traced(folder, words, rays, time_limit_seconds, OCTREE).astype(np.float32)
+
+
+def _triples(values: NDArray[Any], field: str) -> Float:
+    triples = np.asarray(values, np.float64)
+    if triples.ndim != 2 or triples.shape[1] != 3 or not np.isfinite(triples).all():
+        raise InputError(f"must be finite (n, 3), got shape {triples.shape}", field=field)
+    return triples
+
+
+def _directions(values: NDArray[Any], field: str) -> Float:
+    triples = _triples(values, field)
+    length = np.linalg.norm(triples, axis=1, keepdims=True)
+    if not (length > 0).all():
+        # A zero direction tells rtrace to flush its output, it would give no number at all.
+        raise InputError("must not be zero", field=field)
+    return triples / length
+
+
+def _check(places: Float, facing: Float, field: str, bounces: int) -> None:
+    if places.shape != facing.shape:
+        raise InputError(f"must have shape {places.shape}, got {facing.shape}", field=field)
+    if bounces < 0:
+        raise InputError(f"must be ≥ 0, got {bounces}", field="bounces")
+
+
+def _traced(folder: Path, words: list[str], rays: Float, limit: float, octree: str) -> Float:
+    """(n, 3) photometric answers of `rtrace` to rays (n, 6)."""
+    if len(rays) == 0:
+        return np.empty((0, 3))
+    answer = run_radiance("rtrace", [*words, octree], rays.tobytes(), limit, cwd=folder)
+    if len(answer) != 24 * len(rays):
+        raise MachineError(
+            f"rtrace answered {len(answer)} bytes instead of {24 * len(rays)}",
+            remedy="check that memory has room",
+        )
+    watts = np.frombuffer(answer, np.float64).reshape(-1, 3)
+    if not np.isfinite(watts).all():
+        count = int((~np.isfinite(watts)).any(axis=1).sum())
+        raise MachineError(
+            f"rtrace answered no finite numbers for {count} of {len(watts)} points",
+            remedy="check the scene's materials and lamps",
+        )
+    return watts * LUMENS_PER_WATT

@@ -109,9 +109,9 @@ def _fit(offset: Float, normal: Float, distance: Float, lux: Float) -> Float:
 def _across(normal: Float) -> tuple[Float, Float]:
     """Two unit vectors (n, 3) in the tangent plane."""
     axis = np.eye(3)[np.abs(normal).argmin(axis=1)]
-    first = np.cross(normal, axis)
+    first = np.asarray(np.cross(normal, axis), np.float64)
     first /= np.linalg.norm(first, axis=1, keepdims=True)
-    return first, np.cross(normal, first)
+    return first, np.asarray(np.cross(normal, first), np.float64)
 
 
 def _places(position: Float, normal: Float) -> Float:

@@ -94,6 +94,7 @@ def rows() -> tuple[Row, ...]:
         *probe_space.ROWS,
         *baked.ROWS,
         *baked_projection.ROWS,
+        *baked_quality.ROWS,
         *gaze.ROWS,
         *glass.ROWS,
         *glass_blur.ROWS,
@@ -108,5 +109,4 @@ def rows() -> tuple[Row, ...]:
         *glare_models.ROWS,
         *glare_needles.ROWS,
         *glare_numbers.ROWS,
-        *baked_quality.ROWS,
     )

@@ -13,7 +13,7 @@ from worlds_of_probes import furnace, lamp_room, scene_of
 
 import andon.bake.radiance_bounces as pass_module
 from andon.bake import bake_file, bake_probes
-from andon.bake.tasks import LocalWorkers
+from andon.bake.tasks import DaskWorkers, LocalWorkers
 from andon.bake.to_file import placed_in
 from andon.engines.cubes import cube_engine, cube_setting
 from andon.engines.cubes_radiance import light_scenes, photographed_geometry, seen_points
@@ -245,6 +245,20 @@ def test_workers_trace_the_same_light(tmp_path):
     assert result.path.read_bytes() == alone
     assert told == [(n, 6) for n in range(1, 7)]
     assert not (tmp_path / "probes.glb.bake").exists()
+
+
+def test_a_cluster_traces_the_same_light(tmp_path):
+    distributed = pytest.importorskip("distributed", reason="pip install 'andon[cluster]'")
+    loaded = lamp_room(tmp_path, probes=RADIANCE | HAND | {"bounces": 2})
+    alone = bake_file(loaded, engine="reference").path.read_bytes()
+    (tmp_path / "probes.glb").unlink()
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, protocol="tcp",
+        host="127.0.0.1", dashboard_address=None,
+    ) as cluster:  # fmt: skip
+        workers = DaskWorkers(cluster.scheduler_address)
+        result = bake_file(loaded, engine="reference", workers=workers)
+    assert result.path.read_bytes() == alone
 
 
 def test_what_workers_have_traced_is_kept(tmp_path, monkeypatch):

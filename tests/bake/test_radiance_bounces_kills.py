@@ -9,7 +9,6 @@ import time
 import pytest
 from worlds_of_probes import lamp_room
 
-
 SCENE = """
 [surface]
 mesh = "room.glb"

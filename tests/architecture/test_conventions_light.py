@@ -11,6 +11,12 @@ from andon.composite.model import Ambient
 from andon.composite.reference import lamp_luminance, object_luminance, relit_linear
 from andon.engines.prepared import prepare
 from andon.errors import InputError
+from andon.files.illuminance_maps import (
+    geometry_bytes,
+    light_bytes,
+    read_geometry_picture,
+    read_light_picture,
+)
 from andon.files.pictures import read_picture, write_picture
 from andon.glare.kernel import Kernel
 from andon.glare.picture import glare_of_picture
@@ -33,7 +39,9 @@ from andon.lamps.sources import resolve_sources
 from andon.observer.spread.family import spread_function
 from andon.quantities import CameraFrame, photometric
 from andon.responses import SRGB
-from andon.spaces import View
+from andon.spaces import View, look_at
+from andon.transport.baked import BakedMoment, IlluminanceMap
+from andon.transport.baked.reference import baked_illuminance
 from andon.transport.direct.reference import illuminance
 
 from .settings import ORIGIN, VIEW, WHITE, X, Y, Z, close, grey, lamps_of, relit
@@ -294,11 +302,33 @@ def test_dimming_is_linear():
 
 def test_radiance():
     """1 cd is 1/179 W/sr in each channel of Radiance."""
-    from andon.verify.truths.sources import POINT_RADIUS_M, PointSource, source_text
+    from andon.transport.baked.radiance.luminaires import POINT_RADIUS_M, point_text
 
-    text = source_text(PointSource(ORIGIN, np.array([1.0, 2, 3])), "lamp", "")
+    lamp = PointLamp("lamp", ORIGIN, np.array([1.0, 2, 3]))
+    text, _ = point_text(lamp, "lamp", hides=True, radius_m=POINT_RADIUS_M)
     radiance = [float(word) for word in re.search(r"0 0 3 (\S+) (\S+) (\S+)", text).groups()]
     close(radiance, np.array([1, 2, 3]) / (np.pi * POINT_RADIUS_M**2) / 179, rtol=1e-6)
+
+
+def test_illuminance_maps(tmp_path):
+    """A floor seen from 2 m above at 45°: what is written at a pixel is found at its point."""
+    view = View("pinhole", 41, 41, 40.0, 40.0, 20.0, 20.0, world_from_camera=look_at(
+        np.array([0.0, 2, 2]), ORIGIN))  # fmt: skip
+    rays = view.rays_planar() @ view.world_from_camera[:3, :3].T
+    depth = -2 / rays[..., 1]
+    position = view.position + depth[..., None] * rays
+    lux = np.stack([100 + 20 * position[..., 0], 200 + 0 * depth, 0 * depth], axis=-1)
+    (tmp_path / "g.exr").write_bytes(geometry_bytes(depth, np.broadcast_to(Y, lux.shape)))
+    (tmp_path / "l.exr").write_bytes(light_bytes(lux))
+    assert read_picture(tmp_path / "l.exr").attributes["andon:unit"] == "lx"
+    seen = IlluminanceMap(view, *read_geometry_picture(tmp_path / "g.exr"),
+                          {"lantern": read_light_picture(tmp_path / "l.exr")[0]})  # fmt: skip
+    points = np.array([[0.4, 0, 0.3], [0.4, 0, 0.3], [0.4, 0.5, 0.3]])
+    normals = np.array([Y, -Y, Y])  # the floor, its underside, and a table where there is none
+    moment = BakedMoment(0.0, (seen,))
+    found, covered = baked_illuminance(moment, points, normals, shares={"lantern": 0.5})
+    assert covered.tolist() == [True, False, False]
+    close(found[0], [54, 100, 0], rtol=1e-5)
 
 
 def test_alpha(tmp_path):

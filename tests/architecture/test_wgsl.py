@@ -15,7 +15,10 @@ from andon.gpu.passes import shader_module
 from andon.lamps import DirectionalLamp, PointLamp, SkyLamp, SpotLamp
 from andon.lamps.areas import AreaLamp, DiskLamp, PolygonLamp, SphereLamp, TubeLamp
 from andon.quantities import Geometry
+from andon.spaces import View
 from andon.surface.stage import PLAIN, TEXTURED
+from andon.transport.baked.records import moments_text, settings_text
+from andon.transport.baked.stage import MOMENTS, SETTINGS
 from andon.transport.direct.balls.buffers import BALLS, NO_BALLS, PAIRS, pairs_code
 from andon.transport.direct.balls.model import GlassBall
 from andon.transport.direct.shadows.face_maps import DISTANCE, TRIANGLE
@@ -78,6 +81,11 @@ def placed(*shapes, **options):
     return variants_of([Solid("glass", shape, sticker=STUCK, **options) for shape in shapes])
 
 
+def baked(maps, moments, mode, *projections):
+    views = [View(name, 8, 4, 4.0, 4.0) for name in projections]
+    return {SETTINGS: settings_text(views, 3, mode), MOMENTS: moments_text(maps, moments)}
+
+
 def looked_at(*kinds, projection="pinhole"):
     solids = [Solid("glass", Ball(1.0), backdrop=Backdrop(kind)) for kind in kinds]
     return variants_of(solids) | backdrop_variants(solids, projection)
@@ -125,6 +133,9 @@ VARIANTS = {
         for name in ("fisheye", "latlong")
     },
     "probes of objects": PROBE_VARIANTS["object"],
+    "baked maps, one": baked(1, 1, "blend", "pinhole"),
+    "baked maps, the first valid": baked(3, 1, "first_valid", "latlong", "fisheye"),
+    "baked maps, many of two moments": baked(12, 2, "blend", "latlong", "pinhole"),
     "glare of any outline": {OUTLINES.format("circle"): OUTLINES.format("outline")},
 }
 

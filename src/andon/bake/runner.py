@@ -7,19 +7,13 @@ from time import perf_counter
 from typing import NoReturn
 
 from andon.bake.journal import Journal, Result
+from andon.bake.tasks.outcomes import ATTEMPTS, OURS, named
 from andon.errors import InputError, MachineError
 
-__all__ = ["ATTEMPTS", "Progress", "Runner"]
+__all__ = ["Progress", "Runner"]
 
 # (done, of, what is being done)
 Progress = Callable[[int, int, str], None]
-
-# A task is tried this many times before it is reported.
-ATTEMPTS = 3
-# Faults of this program, which no second try mends.
-OURS = (TypeError, AttributeError, NameError, LookupError, AssertionError, NotImplementedError)
-# Failed tasks that a message names.
-SHOWN = 3
 
 
 class Runner:
@@ -93,8 +87,7 @@ class Runner:
         return fault
 
     def _refuse(self, failed: list[tuple[str, Exception]], count: int) -> NoReturn:
-        words = [f"{name} ({type(fault).__name__}: {fault})" for name, fault in failed[:SHOWN]]
-        names = ", ".join(words) + (", …" if len(failed) > SHOWN else "")
+        names = named([(name, f"{type(fault).__name__}: {fault}") for name, fault in failed])
         folder = self.journal.folder
         kept = "" if folder is None else f"the others are kept in {folder}: "
         raise MachineError(

@@ -25,6 +25,7 @@ class Duel:
     peer_repeats : at most so many repetitions of a slow peer.
     peer_less : what the peer does besides what is timed; its time is taken off.
     ours_less : what ours does besides what is timed; its time is taken off.
+    ours_repeats : at most so many repetitions of ours.
     peer_parts : a repetition of the peer does so many times what ours does once; may be < 1.
     """
 
@@ -38,6 +39,7 @@ class Duel:
     peer_less: Callable[[], object] | None = None
     peer_parts: float = 1
     ours_less: Callable[[], object] | None = None
+    ours_repeats: int | None = None
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,8 @@ def rows() -> tuple[BenchRow, ...]:
     """All rows, stage by stage."""
     from andon.bench import (
         areas,
+        bake,
+        baked,
         glare,
         glare_frame,
         glare_needles,
@@ -93,4 +97,5 @@ def rows() -> tuple[BenchRow, ...]:
     light = relight.ROWS + areas.ROWS + glow.ROWS
     rest = glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS
     veils = glare.ROWS + glare_frame.ROWS + glare_needles.ROWS + glare_quads.ROWS
-    return light + rest + veils
+    return light + rest + veils + bake.ROWS
+    return light + baked.ROWS + rest + veils

@@ -81,12 +81,11 @@ def _against_radiance() -> Duel:
     from andon.verify.setting import room, room_lamps
 
     try:
-        from andon.verify.truths.radiance import PointSource, RadianceScene, time_view
+        from andon.verify.truths.radiance import RadianceScene, time_view
     except ImportError as error:
         raise NotShown("Radiance is missing: pip install 'andon[radiance]'") from error
     renderer, view = _room(4), camera_in(room(), WIDTH, HEIGHT)
-    sources = [PointSource(lamp.position_m, lamp.intensity_cd) for lamp in room_lamps(4)]
-    scene = RadianceScene(room(), sources)
+    scene = RadianceScene(room(), room_lamps(4))
     scene.__enter__()
     ours, truth = _diffuse(renderer), scene.luminance(view)
     close = np.abs(ours - truth).max(axis=-1) <= 0.05 * truth.max(axis=-1) + 1e-3

@@ -45,6 +45,7 @@ def _alternating(duel: Duel, repeats: int) -> tuple[list[float], list[float]]:
     if duel.ours_less:
         duel.ours_less()
     peer_repeats = min(repeats, duel.peer_repeats)
+    repeats = min(repeats, duel.ours_repeats or repeats)
     ours: list[float] = []
     peer: list[float] = []
     for index in range(repeats):

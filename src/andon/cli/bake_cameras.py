@@ -10,6 +10,9 @@ import typer
 from andon.cli.console import check_writable, note
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from andon.quantities import Geometry
     from andon.scene import Scene
     from andon.spaces import View
@@ -68,15 +71,20 @@ def _suggested(scene: Scene) -> tuple[Geometry, Suggested]:
     if scene.baked.camera:
         note("the scene states [[baked.camera]]: these are those that would be found without")
     geometry = scene_geometry(scene)
-    suggested = suggested_views(
-        geometry,
-        _frame_views(scene),
-        coverage=scene.baked.coverage,
-        most_cameras=scene.baked.most_cameras,
-        map_size_px=scene.baked.map_size_px,
-        seed=scene.scene.seed,
-        one_sided=scene.surface is not None and scene.surface.mesh is None,
-    )
+    try:
+        suggested = suggested_views(
+            geometry,
+            _frame_views(scene),
+            coverage=scene.baked.coverage,
+            most_cameras=scene.baked.most_cameras,
+            map_size_px=scene.baked.map_size_px,
+            seed=scene.scene.seed,
+            one_sided=scene.surface is not None and scene.surface.mesh is None,
+        )
+    except InputError as error:
+        raise InputError(
+            error.rule, file=scene.file, field=error.field, remedy=error.remedy
+        ) from error
     return geometry, suggested
 
 
@@ -126,7 +134,7 @@ def _note_shortfall(suggested: Suggested, scene: Scene) -> None:
     note(f"{suggested.coverage:.1%} are seen, not the {stated}: {reason}")
 
 
-def _looks_at(view: View) -> Any:
+def _looks_at(view: View) -> NDArray[np.float64]:
     """(3,) a metre ahead."""
     return view.position + view.world_from_camera[:3, 2]
 
@@ -151,8 +159,6 @@ def camera_tables(views: tuple[View, ...], /) -> list[dict[str, Any]]:
 
 
 def _table(view: View) -> dict[str, Any]:
-    import numpy as np
-
     from andon.spaces import look_at
 
     size: dict[str, Any] = {
@@ -161,8 +167,8 @@ def _table(view: View) -> dict[str, Any]:
         "height": view.height,
     }
     if view.projection == "latlong":
-        ahead = np.round(_looks_at(view), 9)
-        if np.array_equal(look_at(view.position, ahead), view.world_from_camera):
+        ahead = _looks_at(view).round(9)
+        if (look_at(view.position, ahead) == view.world_from_camera).all():
             return {**size, "position": view.position.tolist(), "look_at": ahead.tolist()}
     else:
         size |= {key: float(getattr(view, key)) for key in ("fx", "fy", "cx", "cy")}

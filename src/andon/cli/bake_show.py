@@ -56,7 +56,8 @@ def show(
 ) -> None:
     """Show baked illuminance maps: what each camera sees, in lx, all on one scale.
 
-    Grey is where a camera sees no surface.
+    Grey is where a camera sees no surface. Where no map sees what a frame shows, `andon relight
+    --uncovered` tells.
 
     Examples:
 

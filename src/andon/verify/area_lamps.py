@@ -1,4 +1,4 @@
-"""Area lamps of the furnished room, and the triangles as which Radiance is told of them."""
+"""Area lamps of the furnished room, and as how many tiles Radiance is told of them."""
 
 from __future__ import annotations
 
@@ -17,13 +17,11 @@ from andon.lamps import (
     SphereLamp,
     TubeLamp,
 )
-from andon.lamps.solids import capsule, disk, icosphere, quarters
 from andon.verify.rooms import lamps_in
 from andon.verify.setting import room
 from andon.verify.solids import box
-from andon.verify.truths.sources import AreaSource
 
-__all__ = ["room_area_lamps", "sources_of"]
+__all__ = ["room_area_lamps", "tiles_at"]
 
 Float = NDArray[np.float64]
 
@@ -59,64 +57,9 @@ def _frame(facing: Float) -> Float:
     return np.stack([right, np.cross(front, right), front])
 
 
-def sources_of(lamp: AnyAreaLamp, cuts: int, /) -> list[AreaSource]:
-    """`lamp` as triangles of its own area, each cut in four so many more times.
+def tiles_at(cuts: int, /) -> int:
+    """How many tiles Radiance is given of each lamp: four times as many with every cut.
 
-    Radiance looks at the middle of each: a lamp of n triangles that are seen has n hard shadows.
+    It looks at the middle of each: a lamp of n tiles that are seen has n hard shadows.
     """
-    if isinstance(lamp, SphereLamp):
-        ball = icosphere(cuts + 1)
-        corners = ball.positions[ball.triangles]
-        corners = corners * np.sqrt(4 * np.pi / _area(corners)) * lamp.radius_m
-        return [_source(corners + lamp.position_m, lamp)]
-    if isinstance(lamp, TubeLamp):
-        return [_source(_tube(lamp, 8 * 2**cuts), lamp)]
-    if isinstance(lamp, DiskLamp):
-        flat = disk(lamp.position_m, lamp.direction, lamp.radius_m, corners=24)
-        corners = flat.positions[flat.triangles]
-    elif isinstance(lamp, PolygonLamp):
-        v = lamp.vertices_m
-        corners = np.stack([v[[0, 1, 2]], v[[0, 2, 3]]])
-        cuts += 2
-    else:
-        corners = lamp.positions_m[lamp.triangles]
-        cuts += 1
-    for _ in range(cuts):
-        corners = quarters(corners)
-    return [_source(corners, lamp)]
-
-
-def _tube(lamp: TubeLamp, around: int) -> Float:
-    """Triangles (n, 3, 3) of a capsule of the same area, `around` its girth, about as long."""
-    pieces = max(
-        1, round(around / 6 * float(np.linalg.norm(np.diff(lamp.ends_m, axis=0))) / lamp.radius_m)
-    )
-    whole = capsule(lamp.ends_m, lamp.radius_m, around=around, caps=max(2, around // 6))
-    corners = whole.positions[whole.triangles]
-    start, along = lamp.ends_m[0], lamp.ends_m[1] - lamp.ends_m[0]
-    share = (corners - start) @ along / (along @ along)
-    side = (share.min(axis=1) < 1e-9) & (share.max(axis=1) > 1 - 1e-9)
-    # A triangle of the side runs from end to end: as many short ones instead.
-    parts = [corners[~side]]
-    for piece in range(pieces):
-        at = start + (piece + share[side])[..., None] / pieces * along
-        beside = corners[side] - (start + share[side][..., None] * along)
-        parts.append(at + beside)
-    found = np.concatenate(parts)
-    length = float(np.linalg.norm(along))
-    exact = 2 * np.pi * lamp.radius_m * (length + 2 * lamp.radius_m)
-    axis = along / length
-    middle = lamp.ends_m.mean(axis=0)
-    level = ((found - middle) @ axis)[..., None] * axis
-    # Thicker, not longer: as wide as the round one on the mean.
-    return middle + level + (found - middle - level) * exact / _area(found)
-
-
-def _area(corners: Float) -> float:
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return float(np.linalg.norm(across, axis=1).sum() / 2)
-
-
-def _source(corners: Float, lamp: AnyAreaLamp) -> AreaSource:
-    triangles = np.arange(3 * len(corners), dtype=np.int32).reshape(-1, 3)
-    return AreaSource(corners.reshape(-1, 3), triangles, lamp.luminance_cd_m2)
+    return 80 * 4**cuts

@@ -18,29 +18,43 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.bake.maps import bake_maps
+from andon.files.pictures import write_exr, write_png
 from andon.lamps import Lamp, PolygonLamp, resolve_lamps
-from andon.quantities import Surface
-from andon.scene import scene_from_dict
+from andon.pipeline import EngineName, Frame, render
+from andon.quantities import Geometry, Surface
+from andon.responses import SRGB
+from andon.scene import Scene, scene_from_dict
 from andon.spaces import View
 from andon.surface import reference as surface
 from andon.surface.load import surface_of_mesh
 from andon.transport.baked.radiance import radiance_bundle
 from andon.transport.baked.radiance.quality import QUALITIES, Quality
+from andon.transport.baked.radiance.scene import BOUNCE_OCTREE, OCTREE
 from andon.transport.baked.radiance.trace import traced_illuminance
 from andon.verify.rooms import camera_in
 from andon.verify.setting import room
 
-__all__ = ["BOUNCES", "DIMMING", "Truth", "baked_frame", "truth"]
+__all__ = [
+    "BOUNCES",
+    "DIMMING",
+    "LAMPS",
+    "added_lux",
+    "asked_pixels",
+    "baked_frame",
+    "captured_parts",
+    "relit_lux",
+    "white_cd_m2",
+]
 
 Float = NDArray[np.float64]
 
 WIDTH, HEIGHT = 240, 135
 BOUNCES = 3
 DIMMING = 0.3
-# Pixels at which the truth is asked; converged light of all would take an hour.
-ASKED = 1500
-# Every point traced, none interpolated.
-TRUTH = Quality("truth", 2048, 0, 0.0, 0, 0.05, 1e-5, 0.0, 0.0, 0.0)
+# Pixels at which the truth is asked, each by itself; converged light of all would take hours.
+ASKED = 500
+TRUTH = QUALITIES["normal"]
 # Of the photograph's white above its brightest pixel, and above the brightest relit one.
 MARGIN = 1.02
 
@@ -113,9 +127,10 @@ def _captured_lamps() -> tuple[Lamp, ...]:
 def _traced(
     lamps: tuple[Lamp, ...], which: NDArray[np.bool_], quality: Quality, bounces: int
 ) -> Float:
-    """(n, 3) lux at the pixels `which` (H, W)."""
+    """(n, 3) lux at the pixels `which` (H, W), of lamps with all their tiles in each bounce."""
     with TemporaryDirectory() as folder:
-        for name, contents in radiance_bundle([room()], lamps).items():
+        bundle = radiance_bundle([room()], lamps)
+        for name, contents in (dict(bundle) | {BOUNCE_OCTREE: bundle[OCTREE]}).items():
             (Path(folder) / name).write_bytes(contents)
         seen = _seen()
         lux = traced_illuminance(
@@ -137,7 +152,7 @@ def _e0() -> Float:
 
 
 @cache
-def _asked() -> NDArray[np.bool_]:
+def asked_pixels() -> NDArray[np.bool_]:
     """(H, W) the pixels at which the truth is known."""
     places = np.flatnonzero(_seen().valid)
     chosen = np.random.default_rng(5).permutation(places)[:ASKED]
@@ -155,4 +170,96 @@ def _lamps(name: str) -> tuple[Lamp, ...]:
 @cache
 def added_lux(name: str, bounces: int) -> Float:
     """(n, 3) lux that one lamp truly adds to the pixels that are asked."""
-    return _traced(_lamps(name), _asked(), TRUTH, bounces)
+    return _traced(_lamps(name), asked_pixels(), TRUTH, bounces)
+
+
+def relit_lux(*, direct: frozenset[str] = frozenset()) -> Float:
+    """(n, 3) ΔE in truth at the pixels that are asked; of the lamps `direct` no reflected light."""
+    return sum((added_lux(name, 0 if name in direct else BOUNCES) for name in LAMPS), np.zeros(3))
+
+
+def captured_parts() -> tuple[Float, Float]:
+    """Reflectance and E0 in lx of the photograph, both (H, W, 3)."""
+    return _seen().reflectance, _e0()
+
+
+@cache
+def _folder() -> TemporaryDirectory[str]:
+    """Holds the scene's files and its maps, as long as this process lives."""
+    folder = TemporaryDirectory(prefix="andon-verify-")
+    path = Path(folder.name)
+    _write_mesh(path, room())
+    reflected = _seen().reflectance * _e0() / np.pi
+    write_exr(path / "e0.exr", _e0().astype(np.float32), unit="lx", photometry="absolute")
+    codes = np.asarray(SRGB.encode(np.clip(reflected / white_cd_m2(), 0, 1)), np.float64)
+    write_png(path / "photo.png", np.asarray(codes * 255 + 0.5, np.uint8))
+    bake_maps(_scene(path, frozenset()))
+    return folder
+
+
+@cache
+def white_cd_m2() -> float:
+    """The luminance at the end of the range, for both pictures: neither is clipped."""
+    reflectance, which = _seen().reflectance, asked_pixels()
+    relit = reflectance[which] * (DIMMING * _e0()[which] + relit_lux()) / np.pi
+    captured = reflectance * _e0() / np.pi
+    return MARGIN * max(float(captured.max()), float(relit.max()))
+
+
+def _write_mesh(folder: Path, geometry: Geometry) -> None:
+    """``room.obj`` and ``room.mtl``."""
+    lines = [
+        "mtllib room.mtl",
+        *(f"v {x!r} {y!r} {z!r}" for x, y, z in geometry.positions.tolist()),
+    ]
+    ids = geometry.material_ids
+    assert ids is not None
+    for number in range(len(geometry.materials)):
+        lines.append(f"usemtl m{number}")
+        own = geometry.triangles[ids == number] + 1
+        lines += [f"f {a} {b} {c}" for a, b, c in own.tolist()]
+    (folder / "room.obj").write_text("\n".join([*lines, ""]), encoding="ascii")
+    text = ""
+    for number, material in enumerate(geometry.materials):
+        red, green, blue = map(float, material.reflectance)
+        text += f"newmtl m{number}\nKd {red!r} {green!r} {blue!r}\n"
+    (folder / "room.mtl").write_text(text, encoding="ascii")
+
+
+def _scene(folder: Path, direct: frozenset[str]) -> Scene:
+    """The scene with maps of all four lamps; those of `direct` are not asked of them."""
+    view = _view()
+    camera = {
+        "fx": view.fx,
+        "width": WIDTH,
+        "height": HEIGHT,
+        "world_from_camera": view.world_from_camera.tolist(),
+    }
+    lamps = [
+        table | {"name": name} | ({"transport": "direct"} if name in direct else {})
+        for name, table in LAMPS.items()
+    ]
+    return scene_from_dict(
+        {
+            "rig": {"camera": camera},
+            "capture": {"source": "photo.png", "luminance_per_unit": white_cd_m2()},
+            "surface": {"mesh": "room.obj"},
+            "ambient": {"map": "e0.exr", "dimming": DIMMING},
+            "lamp": lamps,
+            "baked": {
+                "folder": "maps",
+                "lamps": [name for name in LAMPS if name not in direct],
+                "bounces": BOUNCES,
+                "map_size_px": WIDTH,
+                "most_cameras": 4,
+            },
+        },
+        folder=folder,
+        file="room",
+    )
+
+
+@cache
+def baked_frame(engine: EngineName, *, direct: frozenset[str] = frozenset()) -> Frame:
+    """The frame with its maps; the lamps `direct` give no reflected light."""
+    return render(_scene(Path(_folder().name), direct), engine=engine)

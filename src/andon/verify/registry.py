@@ -50,6 +50,7 @@ def rows() -> tuple[Row, ...]:
     from andon.verify.rows import (
         area_scene,
         areas,
+        baked,
         caustic,
         gaze,
         glare_flicker,
@@ -89,6 +90,7 @@ def rows() -> tuple[Row, ...]:
         *harmonics.ROWS,
         *probe_light.ROWS,
         *probe_space.ROWS,
+        *baked.ROWS,
         *gaze.ROWS,
         *glass.ROWS,
         *glass_blur.ROWS,

@@ -26,6 +26,7 @@ from andon.scene import Scene
 
 __all__ = ["SUFFIX", "Progress", "bake_maps"]
 
+WRITABLE = "writable"
 SUFFIX = ".exr"
 # (done, of, what is being done, or was last)
 Progress = Callable[[int, int, str], None]
@@ -64,7 +65,7 @@ def bake_maps(
     """
     start = perf_counter()
     plan = planned(scene, trust=trust)
-    store = Store(plan.plan.folder, SUFFIX)
+    store = Store(plan.plan.folder, SUFFIX, beside=(MANIFEST, WRITABLE))
     with store.locked():
         _check_folder(store.folder)
         if fresh:
@@ -112,7 +113,7 @@ def _jobs(scene: Scene, plan: Planned, progress: Progress | None) -> Jobs:
 
 def _check_folder(folder: Path) -> None:
     """A full or read-only disk is known before the first hour, not after it."""
-    write_bytes(folder / "writable", b"writable").unlink(missing_ok=True)
+    write_bytes(folder / WRITABLE, b"writable").unlink(missing_ok=True)
 
 
 def _preparing(progress: Progress | None) -> Callable[[int, int], None] | None:

@@ -96,7 +96,7 @@ class DaskWorkers:
         except Exception as error:  # distributed raises OSError, ValueError, TypeError and others
             raise MachineError(
                 f"no Dask scheduler at {self.address}: {_first_line(error)}",
-                remedy="start one there (dask scheduler), or bake without --dask",
+                remedy="start one there (dask scheduler), or bake on this machine",
             ) from error
         try:
             self._check(client)
@@ -213,7 +213,8 @@ class _DaskPool:
     def _gone(self, why: str) -> MachineError:
         return MachineError(
             f"the Dask scheduler at {self._address} is of no more use: {why}",
-            remedy=f"start it again, or bake without it: what is done is kept in {self._folder}",
+            remedy="start it again, or bake on this machine: "
+            f"what is done is kept in {self._folder}",
         )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import builtins
 import importlib
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
@@ -14,7 +14,7 @@ from typing import Any, Literal, NoReturn
 from andon.bake.tasks.model import Task
 from andon.errors import InputError, MachineError
 
-__all__ = ["ATTEMPTS", "OURS", "SHOWN", "Fault", "Outcome", "performed"]
+__all__ = ["ATTEMPTS", "OURS", "Fault", "Outcome", "named", "performed"]
 
 # A task is tried this many times before it is reported.
 ATTEMPTS = 3
@@ -69,6 +69,12 @@ class Outcome:
     seconds: float = 0.0
     worker: str = ""
     spent: int = 1
+
+
+def named(failed: Sequence[tuple[str, str]], /) -> str:
+    """The first of failed tasks, (name, reason) each, as a message lists them."""
+    words = [f"{name} ({reason})" for name, reason in failed[:SHOWN]]
+    return ", ".join(words) + (", …" if len(failed) > SHOWN else "")
 
 
 def performed(task: Task, folders: Mapping[str, Path], worker: str, /) -> Outcome:

@@ -9,7 +9,7 @@ from time import perf_counter
 from typing import NoReturn
 
 from andon.bake.tasks.model import Bundle, Task
-from andon.bake.tasks.outcomes import ATTEMPTS, SHOWN, Fault, Outcome
+from andon.bake.tasks.outcomes import ATTEMPTS, Fault, Outcome, named
 from andon.bake.tasks.plan import write_plan
 from andon.bake.tasks.store import Store
 from andon.bake.tasks.workers import Pool, Workers
@@ -209,12 +209,10 @@ class _Run:
         )
 
     def _refuse(self) -> NoReturn:
-        words = [f"{name} ({reason})" for name, reason in self.failed[:SHOWN]]
-        names = ", ".join(words) + (", …" if len(self.failed) > SHOWN else "")
         kept = self.kept + self.computed
         raise MachineError(
             f"{len(self.failed)} of {len(self.planned)} tasks failed {self.attempts} times: "
-            f"{names}",
+            f"{named(self.failed)}",
             remedy=f"{kept} are kept in {self.store.folder}: bake again, and only those "
             "that failed are done",
         )

@@ -46,14 +46,16 @@ class Store:
     ----------
     folder : is made by `locked`.
     suffix : of artefacts, with its dot.
+    beside : names of files that its owner writes into the folder as well: what a killed bake has
+        left half-written of them goes, too.
 
     Attributes
     ----------
     found, damaged : artefacts that `get` found whole, and that were there and were not.
     """
 
-    def __init__(self, folder: Path, suffix: str = ".exr") -> None:
-        self.folder, self.suffix = Path(folder), suffix
+    def __init__(self, folder: Path, suffix: str = ".exr", *, beside: Collection[str] = ()) -> None:
+        self.folder, self.suffix, self._beside = Path(folder), suffix, tuple(beside)
         self.found = self.damaged = 0
         self._events = Events(self.folder / JOURNAL)
         self._sums: dict[str, str] = {}
@@ -114,7 +116,7 @@ class Store:
         with locked(self.folder, of=f"{self.folder}"):
             self._depth += 1
             try:
-                self._remove(r"\.([0-9a-f]{64}|plan)\.[0-9a-f]{12}\.tmp\..+")
+                self._remove_unfinished()
                 remove_inputs(self.folder)
                 yield
             finally:
@@ -139,9 +141,12 @@ class Store:
             (self.folder / name).unlink(missing_ok=True)
         self._sums.clear()
 
-    def _remove(self, pattern: str) -> None:
+    def _remove_unfinished(self) -> None:
+        """What `write_atomically` had not renamed when its process was killed."""
+        stems = "|".join(re.escape(Path(name).stem) for name in (PLAN, *self._beside))
+        pattern = re.compile(rf"\.([0-9a-f]{{64}}|{stems})\.[0-9a-f]{{12}}\.tmp(\..+)?")
         for path in self._files():
-            if re.fullmatch(pattern, path.name):
+            if pattern.fullmatch(path.name):
                 path.unlink(missing_ok=True)
 
     def _files(self) -> list[Path]:

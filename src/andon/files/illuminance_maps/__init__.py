@@ -46,6 +46,8 @@ __all__ = [
     "light_bytes",
     "map_file",
     "read_geometry",
+    "read_geometry_picture",
+    "read_light_picture",
     "read_lux",
     "read_manifest",
     "read_moment",

@@ -80,8 +80,9 @@ fn looked_up(seen: BakedMap, at: vec2f, reach: vec3f, normal: vec3f, density: f3
   let scale = 1.0 / max(sums, BAKED_VALID_LEAST);
   let share = (sums - BAKED_VALID_LEAST) * BAKED_VALID_RATE;
   let trust = (a.trust + b.trust + c.trust + d.trust) * (scale * BAKED_TRUST_UNIT);
-  let feathered = border_share(seen, at) * trust * trust * share + BAKED_LEAST_WEIGHT;
-  let blended = select(density * density * feathered, 1.0, BAKED_FIRST_VALID);
+  let inner = border_share(seen, at) * trust;
+  let feathered = inner * inner * inner * inner * share + BAKED_LEAST_WEIGHT;
+  let blended = select(density * feathered, 1.0, BAKED_FIRST_VALID);
   let light = (a.light + b.light + c.light + d.light) * scale;
   return select(0.0, blended, share > 0.0) * vec4f(light, 1.0);
 }

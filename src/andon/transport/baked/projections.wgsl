@@ -45,8 +45,7 @@ fn border_share(seen: BakedMap, at: vec2f) -> f32 {
   if (BAKED_LATLONG && seen.kind == BAKED_KIND_LATLONG) { return 1.0; }
   let beyond = min(at + 0.5, seen.size - 0.5 - at);
   let within = min(beyond.x, beyond.y);
-  let part = clamp(within / seen.border, 0.0, 1.0);
-  return select(0.0, max(part * part * (3.0 - 2.0 * part), BAKED_LEAST_WEIGHT), within >= 0.0);
+  return select(0.0, clamp(within / seen.border, BAKED_LEAST_WEIGHT, 1.0), within >= 0.0);
 }
 
 // Texels per m² of a surface that faces the camera.

@@ -29,10 +29,10 @@ NORMAL_COSINES = (0.5, 0.8660254037844387)
 # A map that sees less than this share of the texels around a point does not see the point.
 VALID_LEAST = 1e-3
 # Weights fall to 0 over so many texels at a map's border (or a quarter of a small map) …
-BORDER_TEXELS = 16.0
+BORDER_TEXELS = 24.0
 # … and so many at the edges of what it sees.
-EDGE_TEXELS = 8
-# Texels per m², at most: nearer than that to a camera, more mean nothing, and squares fit float32.
+EDGE_TEXELS = 12
+# Texels per m², at most: nearer than that to a camera, more mean nothing.
 MOST_DENSITY = 1e10
 # What is left of a weight at a border: it counts where nothing else does.
 LEAST_WEIGHT = 1e-8
@@ -47,7 +47,7 @@ class Texels:
     valid : (t,) there is a surface, and its light is known.
     normal : (t, 3) unit, world; 0 where not valid.
     reach : (t, 3) m, world axes, from the map's camera to the surface; 0 where not valid.
-    trust : (t,) 0…1 in steps of 1/9, rising from the edges of what the map sees inwards; 0 where
+    trust : (t,) 0…1 in steps of 1/13, rising from the edges of what the map sees inwards; 0 where
         not valid.
     """
 
@@ -95,7 +95,7 @@ def _edges(
 
 
 def _inwards(edges: NDArray[np.bool_], goes_round: bool) -> Float:
-    """(h, w) 1/9 at edges, rising inwards to 1, by distance along rows and columns."""
+    """(h, w) 1/13 at edges, rising inwards to 1, by distance along rows and columns."""
     steps = np.where(edges, 0.0, float(EDGE_TEXELS))
     for _ in range(EDGE_TEXELS - 1):
         padded = np.pad(steps, 1, mode="edge")

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from andon.lamps import AnyAreaLamp
 from andon.pipeline import EngineName, Frame, Renderer
 from andon.spaces import View
+from andon.transport.baked.radiance.emitters import tiles_of
 from andon.transport.direct import reference
-from andon.verify.area_lamps import room_area_lamps, sources_of
+from andon.verify.area_lamps import room_area_lamps, tiles_at
 from andon.verify.registry import NotShown, Row
 from andon.verify.rooms import camera_in
 from andon.verify.rows.room import near_depth_edges, near_shadow_edges
@@ -63,7 +64,7 @@ def _truth(cuts: int) -> Float:
     chosen = _chosen()
     found: list[Float] = []
     for lamp in room_area_lamps():
-        with RadianceScene(room(), sources_of(lamp, cuts)) as scene:
+        with RadianceScene(room(), [lamp], tiles=tiles_at(cuts)) as scene:
             found.append(scene.irradiance(surface.position[chosen], surface.normal[chosen]))
     return np.stack(found)
 
@@ -77,8 +78,7 @@ def _edges() -> Mask:
     visibility = Visibility(room())
     near = near_depth_edges(surface.depth)
     for lamp in room_area_lamps():
-        triangles = np.concatenate([s.positions[s.triangles] for s in sources_of(lamp, 0)])
-        places = triangles.mean(axis=1)
+        places = np.concatenate([t.corners.mean(axis=1) for t in tiles_of(lamp, tiles_at(0))])
         places = places[np.linspace(0, len(places) - 1, PROBES).round().astype(int)]
         visible = np.zeros((*mask.shape, len(places)), bool)
         for number, place in enumerate(places):

@@ -42,7 +42,6 @@ def against_radiance(engine: EngineName) -> tuple[float, float, float]:
     """Median and 95th percentile of the relative error in the room, and the share left out."""
     try:
         from andon.verify.truths.radiance import RadianceScene
-        from andon.verify.truths.sources import PointSource
     except ImportError as error:
         raise NotShown("Radiance is missing: pip install 'andon[radiance]'") from error
     frame, lamps = _room_frame(engine), room_lamps(4)
@@ -57,8 +56,7 @@ def against_radiance(engine: EngineName) -> tuple[float, float, float]:
     chosen = np.zeros_like(kept)
     chosen[1::3, 1::3] = True  # a ninth of the pixels: 25,000 points
     kept &= chosen
-    sources = [PointSource(lamp.position_m, lamp.intensity_cd) for lamp in lamps]
-    with RadianceScene(room(), sources) as scene:
+    with RadianceScene(room(), lamps) as scene:
         truth = scene.irradiance(surface.position[kept], surface.normal[kept])
     ours = np.asarray(frame.illuminance.lux, float)[kept]
     floor = 1e-3 * float(np.median(truth))

@@ -29,7 +29,7 @@ from andon.quantities import Geometry, Material
 from andon.responses import SRGB
 from andon.spaces import View
 from andon.surface.load import surface_of_mesh
-from andon.verify.area_lamps import sources_of
+from andon.verify.area_lamps import tiles_at
 from andon.verify.registry import NotShown, Row
 from andon.verify.rooms import camera_in
 from andon.verify.setting import room
@@ -43,7 +43,7 @@ WIDTH, HEIGHT = 240, 135
 DIMMING = 0.3
 SHADOW = Shadow(map_size=1024, samples=64)
 SHADES = 12
-# Of the lamps' triangles, see `sources_of`; the second truth has a quarter as many.
+# Of the lamps' tiles, see `tiles_at`; the second truth has a quarter as many.
 CUTS = 1
 MARGIN = 1.02
 
@@ -108,7 +108,7 @@ def _photographed(geometry: Geometry, lamps: tuple[AnyAreaLamp, ...], cuts: int)
         raise NotShown("Radiance is missing: pip install 'andon[radiance]'") from error
     total = np.zeros((HEIGHT, WIDTH, 3))
     for lamp in lamps:
-        with RadianceScene(geometry, sources_of(lamp, cuts)) as scene:
+        with RadianceScene(geometry, [lamp], tiles=tiles_at(cuts)) as scene:
             total += scene.luminance(_view())
     return total
 

@@ -20,14 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.files.radiance_programs import run_radiance
+from andon.lamps import PointLamp
 from andon.quantities import Geometry
 from andon.rays import RayScene, face_normals
-from andon.verify.truths.sources import (
-    LUMENS_PER_WATT,
-    PointSource,
-    source_text,
-    triangles_text,
-)
+from andon.transport.baked.radiance.luminaires import POINT_RADIUS_M, point_text
+from andon.transport.baked.radiance.text import LUMENS_PER_WATT, polygons_text
 
 __all__ = ["Paper", "Walk", "lampshade_lux", "per_hit", "walk"]
 
@@ -110,7 +107,7 @@ def lampshade_lux(
 ) -> tuple[Float, Float]:
     """(n,) lux of the bulb itself, and (n,) of the lit paper, at `points` (n, 3).
 
-    The bulb is at the origin, a ball of 1 mm.
+    The bulb is at the origin, a ball of 0.1 mm.
 
     Parameters
     ----------
@@ -163,8 +160,9 @@ def _aimed(
 def _octree(folder: Path, shade: Geometry, paper: Paper, intensity_cd: float) -> str:
     both = paper.passes + paper.reflects
     text = f"void trans paper 0 0 7 {both!r} {both!r} {both!r} 0 0 {paper.passes / both!r} 0\n"
-    text += triangles_text(shade.positions[shade.triangles], "paper")
-    text += source_text(PointSource(np.zeros(3), np.full(3, intensity_cd)), "bulb", "")
+    text += polygons_text(shade.positions[shade.triangles], "paper")
+    bulb = PointLamp("bulb", np.zeros(3), np.full(3, intensity_cd))
+    text += point_text(bulb, "bulb", hides=True, radius_m=POINT_RADIUS_M)[0]
     (folder / "scene.rad").write_text(text, encoding="ascii")
     scene = run_radiance("oconv", ["-w", str(folder / "scene.rad")], b"", LIMIT_SECONDS)
     (folder / "scene.oct").write_bytes(scene)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from andon.errors import MachineError
 from andon.files.radiance_programs import package_folder
-from andon.verify.truths.sources import LUMENS_PER_WATT
+from andon.transport.baked.radiance.text import LUMENS_PER_WATT
 
 __all__ = ["radiance_candela"]
 

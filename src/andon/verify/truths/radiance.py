@@ -2,12 +2,11 @@
 
 ::
 
-    Geometry, sources ──▶ scene text ──oconv──▶ octree ──rtrace -I──▶ W/m² per channel ──×179──▶ lux
+    Geometry, lamps ──radiance_bundle──▶ octree ──rtrace -I──▶ W/m² per channel ──×179──▶ lux
 
-The programs come with the `pyradiance` wheel and are called as programs. Everything is exact where
-`rtrace` allows it: every lamp is tested (``-dt 0 -dc 1``), none is jittered (``-dj 0``), numbers
-travel as binary doubles. Emission and textures of the geometry's materials are not exported: give
-what emits as sources.
+The scene is the one that bakes use. Everything is exact where `rtrace` allows it: every lamp is
+tested (``-dt 0 -dc 1``), none is jittered (``-dj 0``), numbers travel as binary doubles. Emission
+of the geometry's materials is left out: give what emits as lamps.
 """
 
 from __future__ import annotations
@@ -26,27 +25,14 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError, MachineError
 from andon.files.radiance_programs import run_radiance
+from andon.lamps import Lamp
 from andon.quantities import Geometry
 from andon.spaces import View
-from andon.verify.truths.sources import (
-    LUMENS_PER_WATT,
-    SPOT_CAL,
-    AreaSource,
-    DirectionalSource,
-    PointSource,
-    Source,
-    SpotSource,
-    source_text,
-    triangles_text,
-)
+from andon.transport.baked.radiance import OCTREE, radiance_bundle
+from andon.transport.baked.radiance.text import LUMENS_PER_WATT
 
 __all__ = [
-    "AreaSource",
-    "DirectionalSource",
-    "PointSource",
     "RadianceScene",
-    "Source",
-    "SpotSource",
     "Timing",
     "irradiance",
     "time_picture",
@@ -83,6 +69,7 @@ class RadianceScene:
     ----------
     geometry : its triangles, with `Material.reflectance` where there are bounces.
     lamps : what emits; may be empty.
+    tiles : about how many flat pieces stand for each area lamp; a mesh is never coarser.
     time_limit_seconds : for each program run; more is a `MachineError`.
 
     Raises
@@ -94,11 +81,12 @@ class RadianceScene:
     def __init__(
         self,
         geometry: Geometry,
-        lamps: Sequence[Source],
+        lamps: Sequence[Lamp],
         *,
+        tiles: int = 1,
         time_limit_seconds: float = 600.0,
     ) -> None:
-        self._geometry, self._lamps = geometry, tuple(lamps)
+        self._geometry, self._lamps, self._tiles = geometry, tuple(lamps), tiles
         self._limit = time_limit_seconds
         self._folder: tempfile.TemporaryDirectory[str] | None = None
 
@@ -122,16 +110,11 @@ class RadianceScene:
             self._folder = None
 
     def _build(self, folder: Path) -> None:
-        spot_cal = folder / "spot.cal"
-        spot_cal.write_text(SPOT_CAL, encoding="ascii")
-        text = _geometry_text(self._geometry) + "".join(
-            source_text(lamp, f"lamp{number}", str(spot_cal))
-            for number, lamp in enumerate(self._lamps)
+        bundle = radiance_bundle(
+            [self._geometry], self._lamps, tiles=self._tiles, time_limit_seconds=self._limit
         )
-        scene = folder / "scene.rad"
-        scene.write_text(text, encoding="ascii")
-        octree = run_radiance("oconv", ["-w", str(scene)], b"", self._limit)
-        (folder / "scene.oct").write_bytes(octree)
+        for name, contents in bundle.items():
+            (folder / name).write_bytes(contents)
 
     def irradiance(
         self,
@@ -192,9 +175,12 @@ class RadianceScene:
         # Every lamp is tested, at its centre; -dr 0: there are no mirrors, so no virtual lamps.
         fixed = ["-h", "-w", "-fd", "-dt", "0", "-dc", "1", "-dj", "0", "-dr", "0"]
         chosen = [word for key, value in options.items() for word in (f"-{key}", str(value))]
-        octree = str(Path(self._folder.name) / "scene.oct")
         answer = run_radiance(
-            "rtrace", [*mode, *fixed, *chosen, octree], rays.tobytes(), self._limit
+            "rtrace",
+            [*mode, *fixed, *chosen, OCTREE],
+            rays.tobytes(),
+            self._limit,
+            cwd=Path(self._folder.name),
         )
         watts = np.frombuffer(answer, np.float64)
         if watts.size != 3 * len(rays):
@@ -207,7 +193,7 @@ class RadianceScene:
 
 def irradiance(
     geometry: Geometry,
-    lamps: Sequence[Source],
+    lamps: Sequence[Lamp],
     points: NDArray[Any],
     normals: NDArray[Any],
     /,
@@ -277,21 +263,3 @@ def _rays(points: NDArray[Any], normals: NDArray[Any], lift_m: float) -> Float:
         raise InputError("must not be zero", field="normals")
     facing = facing / length
     return np.concatenate([origins - (RTRACE_LIFT_M - lift_m) * facing, facing], axis=1)
-
-
-def _geometry_text(geometry: Geometry) -> str:
-    count = len(geometry.triangles)
-    ids = np.zeros(count, np.int32) if geometry.material_ids is None else geometry.material_ids
-    corners = np.asarray(geometry.positions, np.float64)[geometry.triangles]
-    text = ""
-    for number, material in enumerate(geometry.materials):
-        if material.texture is not None:
-            raise InputError(
-                "textures are not exported to Radiance",
-                field=f"materials[{number}].texture",
-                remedy="give the surface one reflectance",
-            )
-        red, green, blue = map(float, material.reflectance)
-        text += f"void plastic m{number} 0 0 5 {red!r} {green!r} {blue!r} 0 0\n"
-        text += triangles_text(corners[ids == number], f"m{number}")
-    return text

@@ -8,10 +8,10 @@ below another's present one need not be looked at (Minoux 1978).
 Gains are whole numbers: the samples a camera adds, each counted more the smaller the texels are
 in which it is seen. Ties go to the first candidate; there is nothing to round.
 
-Found maps go all around (latlong). Pictures of 113° from the same places, in 26 directions, need
-as many cameras in a room of 24 m² and half as many again in two churches' worth of arches, at more
-than twice the texels each (0.97 of the surface, limits of a 25th of the typical distance; cameras,
-and million texels for 0.95):
+Found maps go all around (latlong). Square pictures of 113° from the same places, in 26 directions,
+need as many cameras in a room and half as many again in large buildings, at more than twice the
+texels (cameras for 0.97 of the surface, and million texels for 0.95, where texels may be as long as
+a 25th of the typical distance):
 
 ==================  ==============  ==============
 maps                384 × 192 px    384 × 384 px

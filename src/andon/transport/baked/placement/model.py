@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from andon.spaces import View
 
 __all__ = ["Ended", "Suggested"]
 
-Float = NDArray[np.floating[Any]]
+Float = NDArray[np.float64]
 
 # Why no further camera was added.
 Ended = Literal["reached", "nothing gained", "most cameras"]

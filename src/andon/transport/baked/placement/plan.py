@@ -72,6 +72,7 @@ class _Plan:
 
     def beside_discs(self, at: Float) -> Float:
         """(2,) the nearest place on a spiral around a pixel that no disc covers; takes it."""
+        place = at
         turn = np.arange(400) * 2.399963  # the golden angle
         steps = np.sqrt(np.arange(400))[:, None] * (5.0 * OVERSAMPLING)
         for place in at + steps * np.stack([np.cos(turn), np.sin(turn)], axis=-1):
@@ -133,7 +134,8 @@ def _cut(geometry: Geometry, height: float) -> Float:
         above[above.any(axis=1) & ~above.all(axis=1)],
     )
     # The corner that is alone on its side; both edges from there are cut.
-    alone = np.where(above.sum(axis=1) == 1, above.argmax(axis=1), (~above).argmax(axis=1))
+    single = np.where(above.sum(axis=1, keepdims=True) == 1, above, ~above)
+    alone = single.argmax(axis=1)
     row = np.arange(len(corners))
     start = corners[row, alone]
     ends: list[Float] = []

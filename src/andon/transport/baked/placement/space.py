@@ -71,7 +71,10 @@ def free_places(
         if len(starts) == 0 or not walls.sight(starts).buried.any():
             free &= ~sight.buried
     places = places[free]
-    inside = _connected(walls, starts, places) if len(starts) else _most_enclosed(walls, places)
+    if len(starts) == 0:
+        inside = _most_enclosed(walls, places)
+    else:
+        inside = _connected(walls, starts, places, straight=one_sided)
     return places[inside][:MOST_PLACES]
 
 
@@ -100,8 +103,11 @@ def _jittered(geometry: Geometry, spacing: float, seed: int) -> Float:
     return np.round(places[random.permutation(len(places))], decimals)
 
 
-def _connected(walls: Walls, starts: Float, places: Float) -> Bool:
-    """(p,) there is a way from a start, in straight lines from place to place."""
+def _connected(walls: Walls, starts: Float, places: Float, *, straight: bool = False) -> Bool:
+    """(p,) there is a way from a start, in straight lines from place to place.
+
+    `straight` : of one line. A photograph knows to be free what its camera sees through.
+    """
     reached = np.zeros(len(places), bool)
     waiting = list(starts)
     while waiting and not reached.all():
@@ -109,7 +115,8 @@ def _connected(walls: Walls, starts: Float, places: Float) -> Bool:
         others = np.flatnonzero(~reached)
         seen = others[walls.rays.is_visible(places[others], here)]
         reached[seen] = True
-        waiting += list(places[seen])
+        if not straight:
+            waiting += list(places[seen])
     return reached
 
 

@@ -5,8 +5,8 @@ body of               stands in the scene as
 ===================== ==================================================================
 a lamp of another     diffuse on both sides, with `Body.reflectance`
 an area lamp          the lamp's own tiles
-a shell, exact        the tiles of its outside, which let nothing through and reflect
-                      nothing: all that is reflected *in* the shell is in its lamps already
+a shell, exact        the tiles of its outside, lined with the shell itself, black and opaque:
+                      all that is reflected *in* it is in its lamps already
 an opaque shell       diffuse outside, black inside, for the same reason
 a shell, the paper's  a filter of transmittance t, through which the whole lamp is seen:
                       t·I + (1 − t)·I·V is t·I behind it and I beside it
@@ -24,7 +24,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.lamps import AnyAreaLamp, Body, Lamp, PointLamp
+from andon.lamps import AnyAreaLamp, Body, Lamp, MeshLamp, PointLamp, SphereLamp
+from andon.lamps.solids import quarters
+from andon.rays import RayScene
 from andon.transport.baked.radiance.lamps import is_distant_glow
 from andon.transport.baked.radiance.materials import MIX_FILE, Finish, material_text
 from andon.transport.baked.radiance.text import joined, polygons_text
@@ -33,6 +35,8 @@ __all__ = ["SIDE_CAL", "Standing", "standing", "unsaid"]
 
 Float = NDArray[np.float64]
 
+# A shell is made smaller by this at least, and by no more than the other, to be within its facets.
+SMALLER, LEAST_SHARE = 0.999, 0.8
 # 1 where a ray meets the side on which a triangle runs counter-clockwise.
 SIDE_CAL = "mix_side = if(Rdot, 1, 0);\n"
 
@@ -61,7 +65,10 @@ def standing(lamps: Sequence[Lamp], bodies: Sequence[Body], /, *, black: bool) -
     for number, body in enumerate(bodies):
         name, lamp = f"body{number}", named.get(body.name)
         if isinstance(lamp, AnyAreaLamp):
-            opaque.add(body.name)
+            lining = "" if lamp.drawn else _lining(body, lamp, lamps, name)
+            text += lining
+            if not lining:
+                opaque.add(body.name)
         elif isinstance(lamp, PointLamp):
             text += _filter(body, lamp, joined_lamps, name)
         else:
@@ -89,6 +96,27 @@ def _solid(body: Body, name: str, is_own: bool, black: bool) -> str:
         text += f"void mixfunc {name}.both 4 {name} {name}.in mix_side {MIX_FILE} 0 0\n"
         name = f"{name}.both"
     return text + _triangles(body, name)
+
+
+def _lining(body: Body, outside: AnyAreaLamp, lamps: Sequence[Lamp], name: str) -> str:
+    """The shell itself, black, just within the few facets that emit its light.
+
+    Facets stand for many triangles, and leave other gaps than these do; so they are *illum*, which
+    the bulb's light passes, and this hides it. It is made smaller about the bulb, which sees the
+    same of it. "" for a shell out of which no bulb shines.
+    """
+    bulbs = [x for x in lamps if x.owner == outside.owner and isinstance(x, PointLamp | SphereLamp)]
+    if not bulbs or not isinstance(outside, MeshLamp):
+        return ""
+    place, geometry = bulbs[0].position_m, body.geometry
+    middles = quarters(outside.positions_m[outside.triangles]).mean(axis=1) - place
+    away = np.linalg.norm(middles, axis=1)
+    hits = RayScene(geometry).first_hits(np.tile(place, (len(away), 1)), middles / away[:, None])
+    share = away / hits.distance  # 0 where it leaves a gap
+    scale = SMALLER * float(share[share > LEAST_SHARE].min(initial=1.0))
+    inner = place + scale * (geometry.positions - place)
+    text = material_text(name, Finish(np.zeros(3), np.zeros(3)))
+    return text + polygons_text(inner[geometry.triangles], name)
 
 
 def _triangles(body: Body, name: str) -> str:

@@ -22,7 +22,7 @@ from andon.lamps import (
     TubeLamp,
 )
 from andon.lamps.polygons import polygon_triangles
-from andon.lamps.solids import capsule, disk, icosphere, quarters
+from andon.lamps.solids import capsule, disk, icosphere
 from andon.lamps.triangles import triangle_areas, unit_normals
 
 __all__ = ["Tiles", "tiles_of"]
@@ -33,6 +33,8 @@ Float = NDArray[np.float64]
 HALF_GAP_M = 5e-5
 # A rectangle's tiles are no longer than this times their width.
 ALONG_TOO = 1.5
+# Where a triangle's longest edge is cut: of all shares the golden one is repeated least.
+UNEVEN = 2 / (1 + np.sqrt(5))
 # Corners of the fan with which a disk begins.
 DISK_CORNERS = 12
 # Sides of a tube: odd, since seen from around the width of a polygon of 13 corners varies by 0.7 %,
@@ -181,12 +183,24 @@ def _cut(corners: Float, count: int) -> Float:
 
 
 def _cut_to(corners: Float, area_m2: float) -> Float:
-    """Triangles (n, 3, 3), quartered until none is larger than 1.5 times the area."""
+    """Triangles (n, 3, 3), cut until none is larger than 1.5 times the area.
+
+    Across the longest edge and not in its middle: the middles of regular tiles lie in rows, and
+    rows of bars before a lamp hide all of them or none.
+    """
     while True:
         large = triangle_areas(corners) > ALONG_TOO * area_m2
         if not large.any():
             return corners
-        corners = np.concatenate([corners[~large], quarters(corners[large])])
+        corners = np.concatenate([corners[~large], _halves(corners[large])])
+
+
+def _halves(corners: Float) -> Float:
+    length = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    turned = (np.arange(3) + length.argmax(axis=1)[:, None]) % 3
+    a, b, c = np.moveaxis(np.take_along_axis(corners, turned[..., None], axis=1), 1, 0)
+    middle = a + UNEVEN * (b - a)
+    return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
 
 def _both_sides(parts: Sequence[Tiles]) -> list[Tiles]:

@@ -32,6 +32,7 @@ from andon.lamps import (
     SkyLamp,
 )
 from andon.transport.baked.radiance.emitters import Tiles, tiles_of
+from andon.transport.baked.radiance.few import thinned
 from andon.transport.baked.radiance.luminaires import point_text
 from andon.transport.baked.radiance.places import balls_of
 from andon.transport.baked.radiance.text import (
@@ -70,7 +71,12 @@ def is_distant_glow(lamp: Lamp, /) -> bool:
 
 
 def lamps_text(
-    lamps: Sequence[Lamp], /, *, tiles: int, opaque: frozenset[str] = frozenset()
+    lamps: Sequence[Lamp],
+    /,
+    *,
+    tiles: int,
+    opaque: frozenset[str] = frozenset(),
+    most: int | None = None,
 ) -> LampText:
     """All of `lamps`: those with a place first, then the others, in their order.
 
@@ -78,6 +84,7 @@ def lamps_text(
     ----------
     tiles : about how many of them stand for each area lamp.
     opaque : names of lamps that hide what is behind them although they are not drawn.
+    most : no more tiles than this stand for each area lamp, see `few`; None: all of them.
     """
     text, files = "", dict[str, bytes]()
     for number, ball in enumerate(balls_of(lamps)):
@@ -89,7 +96,9 @@ def lamps_text(
         name = f"light{number}"
         if isinstance(lamp, AnyAreaLamp):
             hides = lamp.drawn or lamp.name in opaque
-            text += _area_text(tiles_of(lamp, tiles), lamp.name, name, hides)
+            parts = tiles_of(lamp, tiles)
+            parts = parts if most is None else thinned(parts, most)
+            text += _area_text(parts, lamp.name, name, hides)
         elif not isinstance(lamp, PointLamp):
             text += _distant_text(lamp, name)
     return LampText(text, files)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
 
-from andon.bake.tasks.model import Bundle
 from andon.files.radiance_programs import run_radiance
 from andon.lamps import Body, Lamp, PointLamp
 from andon.quantities import Geometry
@@ -17,12 +17,19 @@ from andon.transport.baked.radiance.materials import MIX_CAL, MIX_FILE
 from andon.transport.baked.radiance.surfaces import surfaces_of, without_near
 from andon.transport.baked.radiance.textures import TEXTURE_CAL, TEXTURE_FILE
 
-__all__ = ["OCTREE", "radiance_bundle"]
+if TYPE_CHECKING:
+    from andon.bake.tasks.model import Bundle
+
+__all__ = ["BOUNCE_OCTREE", "OCTREE", "radiance_bundle"]
 
 SCENE, OCTREE = "scene.rad", "scene.oct"
+# The same scene with lamps of few tiles, for the light that surfaces reflect.
+BOUNCE_SCENE, BOUNCE_OCTREE = "bounce.rad", "bounce.oct"
 # Tiles of an area lamp: unshadowed light is then off by 0.02 % (rectangle) to 0.4 % (ball) median,
 # 0.06 to 1.1 % at the 95th percentile a metre or two away, and a penumbra has so many steps.
 TILES = 64
+# The same for reflected light.
+BOUNCE_TILES = 8
 LIMIT_SECONDS = 600.0
 
 
@@ -36,8 +43,10 @@ def radiance_bundle(
     emission: bool = False,
     black: bool = False,
     tiles: int = TILES,
+    time_limit_seconds: float = LIMIT_SECONDS,
 ) -> Bundle:
-    """The files from which `rtrace`, run in their folder, computes ``scene.oct``.
+    """The files from which `rtrace`, run in their folder, computes ``scene.oct``, the scene with
+    its lamps in all detail, and ``bounce.oct``, for the light that surfaces reflect.
 
     Identical inputs give identical bytes.
 
@@ -53,6 +62,7 @@ def radiance_bundle(
     black : nothing reflects; with a sky, ``-ab 1`` is then its direct light.
     tiles : about how many flat pieces stand for each area lamp; the time of direct light grows
         with them.
+    time_limit_seconds : for each run of a program.
 
     Raises
     ------
@@ -65,28 +75,37 @@ def radiance_bundle(
             parts = [without_near(part, lamp.position_m, shadow.near_m) for part in parts]
     there = standing(lamps, bodies, black=black)
     shining = lamps_text(there.lamps, tiles=tiles, opaque=there.opaque)
+    few = lamps_text(there.lamps, tiles=tiles, opaque=there.opaque, most=BOUNCE_TILES)
     surfaces = surfaces_of(parts, emission=emission, black=black)
+    around = surfaces.text + there.text
     files: dict[str, bytes] = {
         POINT_FILE: POINT_CAL.encode("ascii"),
         MIX_FILE: (MIX_CAL + SIDE_CAL).encode("ascii"),
         TEXTURE_FILE: TEXTURE_CAL.encode("ascii"),
         **shining.files,
         **surfaces.pictures,
-        SCENE: (surfaces.text + there.text + shining.text).encode("ascii"),
+        SCENE: (around + shining.text).encode("ascii"),
+        BOUNCE_SCENE: (around + few.text).encode("ascii"),
     }
     more = [name for name in include if name.endswith(".rad")]
-    return _built(files | dict(include), surfaces.meshes, [SCENE, *more])
+    return _built(files | dict(include), surfaces.meshes, more, time_limit_seconds)
 
 
-def _built(files: dict[str, bytes], meshes: Mapping[str, bytes], scenes: list[str]) -> Bundle:
-    """The files, the meshes and the octree that Radiance's programs make of them."""
+def _built(
+    files: dict[str, bytes], meshes: Mapping[str, bytes], more: list[str], limit: float
+) -> Bundle:
+    """The files, the meshes and the octrees that Radiance's programs make of them.
+
+    `more` : names of scene texts beside Andon's own.
+    """
     with TemporaryDirectory(prefix="andon-radiance-") as name:
         folder = Path(name)
         for file, contents in files.items():
             (folder / file).write_bytes(contents)
         for mesh, contents in meshes.items():
             (folder / f"{mesh}.obj").write_bytes(contents)
-            run_radiance("obj2mesh", [f"{mesh}.obj", f"{mesh}.rtm"], b"", LIMIT_SECONDS, cwd=folder)
+            run_radiance("obj2mesh", [f"{mesh}.obj", f"{mesh}.rtm"], b"", limit, cwd=folder)
             files[f"{mesh}.rtm"] = (folder / f"{mesh}.rtm").read_bytes()
-        octree = run_radiance("oconv", ["-w", *scenes], b"", LIMIT_SECONDS, cwd=folder)
-    return files | {OCTREE: octree}
+        for scene, octree in ((SCENE, OCTREE), (BOUNCE_SCENE, BOUNCE_OCTREE)):
+            files[octree] = run_radiance("oconv", ["-w", scene, *more], b"", limit, cwd=folder)
+    return files

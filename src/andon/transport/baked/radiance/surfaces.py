@@ -50,7 +50,7 @@ def surfaces_of(parts: Sequence[Geometry], /, *, emission: bool, black: bool) ->
             mesh = mesh_obj(geometry, own)
             if not mesh:
                 continue
-            pictures[f"{name}.hdr"] = _picture(material)
+            pictures[f"{name}.hdr"] = _picture(material, place)
             text += texture_text(f"{name}.t", material.texture, f"{name}.hdr")
             text += material_text(name, finish, pattern=f"{name}.t")
             text += f"{name} mesh {name}.m 1 {name}.rtm 0 0\n"
@@ -58,11 +58,11 @@ def surfaces_of(parts: Sequence[Geometry], /, *, emission: bool, black: bool) ->
     return Surfaces(text, pictures, meshes)
 
 
-def _picture(material: Material) -> bytes:
+def _picture(material: Material, field: str) -> bytes:
     assert material.texture is not None
     # No surface reflects more than all.
     most = 1 / np.maximum(np.asarray(material.reflectance, np.float64), 1e-6)
-    return picture_bytes(material.texture, most)
+    return picture_bytes(material.texture, most, f"{field}.texture")
 
 
 def without_near(geometry: Geometry, place: Float, radius_m: float, /) -> Geometry:

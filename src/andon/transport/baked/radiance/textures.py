@@ -59,10 +59,10 @@ def _size(texture: NDArray[Any]) -> tuple[int, int]:
     return min(texture.shape[0], MOST_PX), min(texture.shape[1], MOST_PX)
 
 
-def picture_bytes(texture: NDArray[Any], most: NDArray[np.float64]) -> bytes:
+def picture_bytes(texture: NDArray[Any], most: Float, field: str = "texture") -> bytes:
     """A Radiance picture of a texture (h, w, 3), linear, with its rim; no channel above `most`."""
     if texture.ndim != 3 or texture.shape[2] < 3 or 0 in texture.shape:
-        raise InputError(f"must be (h, w, 3), got {texture.shape}", field="texture")
+        raise InputError(f"must be (h, w, 3), got {texture.shape}", field=field)
     colours = texture[..., :3]
     linear = srgb_decode(colours / 255.0) if colours.dtype == np.uint8 else colours
     linear = np.clip(np.nan_to_num(np.asarray(linear, np.float64)), 0, most)

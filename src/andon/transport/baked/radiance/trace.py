@@ -2,9 +2,14 @@
 
 ::
 
-    folder/scene.oct, points ──rtrace -I──▶ W/m² per channel ──× 179──▶ lux
+    all points ──scene.oct, -ab 0──────────────────────▶ straight from lamps ──┐
+                                                                               + ──▶ lux
+    some points ──bounce.oct, -ab N less -ab 0──▶ reflected ──smoothed to all──┘
 
-The program runs in the folder, so that the scene's files have names without a path.
+W/m² of each channel times 179 are lux. The program runs in the folder, so that the scene's files
+have names without a path. One process computes in one order, and random numbers begin alike; what
+else runs on the machine does not matter. Which points are asked together does: they are each
+other's neighbours.
 """
 
 from __future__ import annotations
@@ -18,13 +23,15 @@ from numpy.typing import NDArray
 from andon.errors import InputError, MachineError
 from andon.files.radiance_programs import run_radiance
 from andon.transport.baked.model import Part
-from andon.transport.baked.radiance.quality import Quality
+from andon.transport.baked.radiance.quality import FEW_POINTS, Quality
+from andon.transport.baked.radiance.smoothing import chosen_points, smoothed
 
 __all__ = ["traced_illuminance", "traced_luminance"]
 
 Float = NDArray[np.float64]
 
-OCTREE = "scene.oct"
+# What `radiance_bundle` makes: lamps in all detail, and of few tiles for what is reflected.
+OCTREE, BOUNCES = "scene.oct", "bounce.oct"
 # Radiance's own luminous efficacy, lm/W, applied channel by channel.
 LUMENS_PER_WATT = 179.0
 # What is the same in every quality. Every lamp is tested (-dt, -dc), at its centre (-dj); there are
@@ -49,12 +56,13 @@ def traced_illuminance(
 
     Parameters
     ----------
-    folder : with the octree ``scene.oct`` and the files that it names.
-    position, normal : finite; normals of any length but 0. Light is measured 0.1 mm above.
+    folder : with the octrees ``scene.oct`` and ``bounce.oct``, and the files that they name.
+    position, normal : finite; normals of any length but 0. Light is measured 0.1 mm above. From
+        1000 points on they are smoothed as parts of one picture.
     bounces : how often surfaces reflect the light, ≥ 0.
     part : "all", or "bounce": all less the light that comes straight from the lamp.
     direct_bounces : ``-ab`` at which the lamp's own light is complete: 0, but 1 of a sky of glow,
-        which rays of the hemisphere find.
+        which rays of the hemisphere find: the scene must have no other lamps then.
     time_limit_seconds : for each run of `rtrace`.
 
     Raises
@@ -64,16 +72,26 @@ def traced_illuminance(
     """
     places, facing = _triples(position, "position"), _directions(normal, "normal")
     _check(places, facing, "normal", bounces)
-    rays = np.concatenate([places, facing], axis=1)
+    rays, count = np.concatenate([places, facing], axis=1), quality.traced(len(places))
+    chosen = chosen_points(places, facing, count)
+    alone = count < FEW_POINTS
 
-    def ask(most: int) -> Float:
-        words = ["-I", *FIXED, *quality.options(most)]
-        return _traced(folder, words, rays, time_limit_seconds)
+    def ask(octree: str, asked: Float, most: int) -> Float:
+        words = ["-I", *FIXED, *quality.options(most, alone=alone)]
+        return _traced(folder, words, asked, time_limit_seconds, octree)
 
-    lux = ask(bounces + direct_bounces)
-    if part == "bounce":
-        lux = np.maximum(lux - ask(direct_bounces), 0)
-    return lux.astype(np.float32)
+    # What lamps give by themselves, if `rtrace` finds them everywhere without chance.
+    has_exact = part == "all" and not direct_bounces
+    result = ask(OCTREE, rays, 0) if has_exact else np.zeros_like(places)
+    if bounces or (direct_bounces and part == "all"):
+        found = ask(BOUNCES, rays[chosen], bounces + direct_bounces)
+        if part == "bounce" or not direct_bounces:
+            found -= ask(BOUNCES, rays[chosen], direct_bounces)
+        found = np.maximum(found, 0)  # a difference's rounding
+        if not alone:
+            found = smoothed(places, facing, chosen, found, neighbours=quality.neighbours)
+        result = result + found
+    return result.astype(np.float32)
 
 
 def traced_luminance(
@@ -93,8 +111,8 @@ def traced_luminance(
     places, looking = _triples(origins, "origins"), _directions(directions, "directions")
     _check(places, looking, "directions", bounces)
     rays = np.concatenate([places, looking], axis=1)
-    words = [*FIXED, *quality.options(bounces)]
-    return _traced(folder, words, rays, time_limit_seconds).astype(np.float32)
+    words = [*FIXED, *quality.options(bounces, alone=True)]
+    return _traced(folder, words, rays, time_limit_seconds, OCTREE).astype(np.float32)
 
 
 def _triples(values: NDArray[Any], field: str) -> Float:
@@ -120,11 +138,11 @@ def _check(places: Float, facing: Float, field: str, bounces: int) -> None:
         raise InputError(f"must be ≥ 0, got {bounces}", field="bounces")
 
 
-def _traced(folder: Path, words: list[str], rays: Float, limit: float) -> Float:
+def _traced(folder: Path, words: list[str], rays: Float, limit: float, octree: str) -> Float:
     """(n, 3) photometric answers of `rtrace` to rays (n, 6)."""
     if len(rays) == 0:
         return np.empty((0, 3))
-    answer = run_radiance("rtrace", [*words, OCTREE], rays.tobytes(), limit, cwd=folder)
+    answer = run_radiance("rtrace", [*words, octree], rays.tobytes(), limit, cwd=folder)
     if len(answer) != 24 * len(rays):
         raise MachineError(
             f"rtrace answered {len(answer)} bytes instead of {24 * len(rays)}",

@@ -43,7 +43,7 @@ def test_a_furnace_is_the_geometric_series(reflectance, bounces):
 
 def test_many_bounces_in_a_furnace_approach_the_closed_form():
     bundle = radiance_bundle([furnace((0.5, 0.3, 0.0))], [], emission=True)
-    lux = lux_of(bundle, FLOOR, UP, 10, "-aa", "0.1", "-ad", "256", "-as", "64")
+    lux = lux_of(bundle, FLOOR, UP, 7, "-aa", "0.2", "-ad", "128", "-as", "32")
     want = np.pi * EMITTED / (1 - np.array([0.5, 0.3, 0.0]))
     np.testing.assert_allclose(lux, np.tile(want, (3, 1)), rtol=0.01)
 

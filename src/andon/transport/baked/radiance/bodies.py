@@ -36,7 +36,7 @@ __all__ = ["SIDE_CAL", "Standing", "standing", "unsaid"]
 Float = NDArray[np.float64]
 
 # A shell is made smaller by this at least, and by no more than the other, to be within its facets.
-SMALLER, LEAST_SHARE = 0.999, 0.8
+SMALLER, LEAST_SHARE = 0.997, 0.8
 # 1 where a ray meets the side on which a triangle runs counter-clockwise.
 SIDE_CAL = "mix_side = if(Rdot, 1, 0);\n"
 
@@ -109,7 +109,9 @@ def _lining(body: Body, outside: AnyAreaLamp, lamps: Sequence[Lamp], name: str) 
     if not bulbs or not isinstance(outside, MeshLamp):
         return ""
     place, geometry = bulbs[0].position_m, body.geometry
-    middles = quarters(outside.positions_m[outside.triangles]).mean(axis=1) - place
+    facets = outside.positions_m[outside.triangles]
+    # Wherever the middle of a tile may be: at 64 points of each facet.
+    middles = quarters(quarters(quarters(facets))).mean(axis=1) - place
     away = np.linalg.norm(middles, axis=1)
     hits = RayScene(geometry).first_hits(np.tile(place, (len(away), 1)), middles / away[:, None])
     share = away / hits.distance  # 0 where it leaves a gap

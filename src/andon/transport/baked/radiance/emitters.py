@@ -1,7 +1,8 @@
 """Area lamps as the flat tiles of which Radiance is told.
 
-Radiance looks at the middle of each: a lamp of n tiles that are seen casts n hard shadows, and at a
-distance d a tile of the width w is off by about (w/d)²/4 (median). Its own large balls have no
+Radiance looks at the middle of each: a lamp of n tiles that are seen casts n hard shadows. What
+stands just before a lamp's edge is missed by few tiles: the frame of the andon in `examples/tatami`
+takes 5 % of its light, of which 64 tiles see nothing, and 600 half. Its own large balls have no
 horizon (-62 % at 88° from the lamp's direction, where half a ball shows): tiles have one.
 """
 

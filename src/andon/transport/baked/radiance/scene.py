@@ -59,7 +59,7 @@ def radiance_bundle(
         lamp, so not in a lamp's map.
     black : nothing reflects; with a sky, ``-ab 1`` is then its direct light.
     tiles : about how many flat pieces stand for each area lamp; the time of direct light grows
-        with them.
+        with them. More where something stands close to a lamp.
     time_limit_seconds : for each run of a program.
 
     Raises

@@ -13,6 +13,10 @@ What was measured, and decided by it (a room of 15,000 triangles, a lantern of 1
 * Every lamp is tested at every point (``-dt 0``). Testing those alone that matter halves the time
   and took 38 % of the light away: tiles of one lamp are not chance, by which Radiance guesses the
   ones that it leaves out.
+* Errors, at 160 random points of that room, 4 bounces, against 6000 rays each (whose own noise is
+  in them, about 2 % of the reflected light): the median is that of noise. The 95th percentile is
+  that of a lattice with paper behind it, a few pixels wide: cells of more pixels than that mix
+  them, in every preset that smooths.
 * Paths end by chance (``-lw`` 1/rays, ``-lr`` < 0), which has no error on the mean.
 """
 
@@ -82,8 +86,8 @@ class Quality:
 
 QUALITIES: Mapping[str, Quality] = MappingProxyType(
     {
-        "draft": Quality("draft", 0.01, 16, 36, 256, 0.2, 0.06, 0.5, 15.0),
-        "normal": Quality("normal", 0.06, 24, 36, 1024, 0.2, 0.03, 0.2, 60.0),
-        "fine": Quality("fine", 0.15, 16, 256, 4096, 0.2, 0.02, 0.1, 900.0),
+        "draft": Quality("draft", 0.01, 24, 36, 256, 0.2, 0.065, 0.56, 13.0),
+        "normal": Quality("normal", 0.06, 48, 64, 1024, 0.2, 0.046, 0.32, 85.0),
+        "fine": Quality("fine", 0.15, 24, 256, 4096, 0.2, 0.02, 0.3, 620.0),
     }
 )

@@ -13,7 +13,7 @@ Unlike `rtrace`'s own interpolation it does not depend on the order of points: n
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,7 +82,7 @@ def smoothed(
     for start in range(0, len(places), BLOCK):
         block = slice(start, start + BLOCK)
         distance, index = tree.query(places[block], k=range(1, near + 1))
-        offset = position[chosen][index] - position[block, None]
+        offset = np.asarray(position[chosen][index] - position[block, None], np.float64)
         result[block] = _fit(offset, normal[block], distance, lux[index])
     return result
 
@@ -101,11 +101,12 @@ def _fit(offset: Float, normal: Float, distance: Float, lux: Float) -> Float:
     mean = np.einsum("nk,nkc->nc", weight, lux)
     from_middle = flat - middle[:, None]
     spread = np.einsum("nk,nki,nkj->nij", weight, from_middle, from_middle)
-    ridge = RIDGE * np.trace(spread, axis1=1, axis2=2) + 1e-12
-    slope = np.linalg.solve(
+    ridge = RIDGE * (spread[:, 0, 0] + spread[:, 1, 1]) + 1e-12
+    solved = np.linalg.solve(  # pyright: ignore[reportUnknownVariableType]
         spread + ridge[:, None, None] * np.eye(2),
         np.einsum("nk,nki,nkc->nic", weight, from_middle, lux - mean[:, None]),
     )
+    slope = cast(Float, solved)
     fitted = mean - np.einsum("ni,nic->nc", middle, slope)
     # A slope does not make light that no neighbour has.
     return np.clip(fitted, lux.min(axis=1), lux.max(axis=1))

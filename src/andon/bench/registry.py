@@ -97,5 +97,4 @@ def rows() -> tuple[BenchRow, ...]:
     light = relight.ROWS + areas.ROWS + glow.ROWS
     rest = glass.ROWS + glass_frame.ROWS + probes.ROWS + probe_light.ROWS
     veils = glare.ROWS + glare_frame.ROWS + glare_needles.ROWS + glare_quads.ROWS
-    return light + rest + veils + bake.ROWS
-    return light + baked.ROWS + rest + veils
+    return light + baked.ROWS + bake.ROWS + rest + veils

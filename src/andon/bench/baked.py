@@ -53,7 +53,7 @@ def _map(seed: int) -> IlluminanceMap:
 
 def _frame(count: int) -> tuple[Callable[[bool], bool], Callable[[], Any], float]:
     """A frame drawn (True: anew), the same by NumPy, and the share of pixels that are the same."""
-    gpu, light, setting = open_gpu(), room_light(count), room_setting(0, WIDTH, HEIGHT)
+    gpu, light, setting = open_gpu(), room_light(count), room_setting(1, WIDTH, HEIGHT)
     (view,) = (frame.view for frame in setting.frames.values())
     stage = SurfaceStage(gpu, setting.surface, view)
     seen = stage.surface

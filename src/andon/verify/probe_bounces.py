@@ -165,7 +165,7 @@ def true_irradiance(
 @cache
 def furnace_error(by: By, bounces: int, quality: str = "draft", engine: str = "auto") -> float:
     """Largest relative error of the mean light in the furnace, against its closed form."""
-    own = {"bounces_quality": quality} if by == "radiance" else {}
+    own: dict[str, Any] = {"bounces_quality": quality} if by == "radiance" else {}
     with TemporaryDirectory() as name:
         scene = box_scene(
             Path(name), furnace=True, bounces=bounces, bounces_by=by, cube_size_px=8, **own
@@ -200,7 +200,7 @@ def _box_light(by: By, bounces: int, engine: str, own: tuple[tuple[str, Any], ..
 def bounce_errors(
     by: By, bounces: int, /, *, truth: str = "normal", engine: str = "auto", **own: Any
 ) -> BounceErrors:
-    """Errors in the box; `own` are other arguments of `box_scene`."""
+    """Errors in the box after 2 or more bounces; `own` are other arguments of `box_scene`."""
     # Radiance asks nothing of the other probes.
     keys = tuple(own.items()) if by == "radiance" else tuple(({"side": 2} | own).items())
     light = _box_light(by, bounces, engine, keys)

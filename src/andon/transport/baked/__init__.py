@@ -12,13 +12,13 @@ Is it the same surface?
     the normals agree: fully up to 30°, not at all from 60° on. Held against each other on a floor
     3…9 m away, seen from 0.8 m above, and within 2 cm of the corner of a lit floor and a dark wall:
 
-    ================  =====================  ====================  ================================
-    ε                 floor: depths accept   tangent planes        corner: light of the other wall
-    ================  =====================  ====================  ================================
-    2 cm              33 %                   100 %                 by depths 13 % of the points
-    10 cm             89 %                   100 %                 by depths 14 %
-    (any)                                                          by planes 0 %
-    ================  =====================  ====================  ================================
+    ================  ================================  =====================================
+    rule              floor: points that are accepted   corner: points with the other's light
+    ================  ================================  =====================================
+    depth, ε = 2 cm   33 %                              13 %
+    depth, ε = 10 cm  89 %                              14 %
+    tangent planes    100 %                             0 %
+    ================  ================================  =====================================
 
 Why the texel's plane and not the point's
     They are one on flat surfaces and differ by the same second order on curved ones. A texel's

@@ -4,7 +4,7 @@
 //!import andon/transport/baked/moments.wgsl
 
 // Illuminance in lux (xyz), and 1 where it is known (w).
-fn baked_lux(position: vec3f, normal: vec3f) -> vec4f {
+fn projected_lux(position: vec3f, normal: vec3f) -> vec4f {
   let earlier = baked_earlier(position, normal);
   let later = baked_later(position, normal);
   let share = select(select(1.0, baked.later_share, earlier.w > 0.0), 0.0, later.w == 0.0);

@@ -10,5 +10,5 @@
   let point = surface_point(textureLoad(gbuffer, vec2i(pixel.xy), 0), pixel.xy);
   // Of a hole there is no place.
   if ((point.flags & VALID) == 0u) { return vec4f(0.0); }
-  return baked_lux(point.position, point.normal);
+  return projected_lux(point.position, point.normal);
 }

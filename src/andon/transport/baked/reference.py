@@ -26,7 +26,7 @@ from andon.transport.baked.texels import (
     NORMAL_COSINES,
     VALID_LEAST,
     Texels,
-    texels_of,
+    kept_texels,
 )
 
 __all__ = [
@@ -130,7 +130,7 @@ def map_illuminance(
         facing = -np.einsum("ij,ij->i", reach, normal) / np.linalg.norm(reach, axis=1)
         border = border_share(seen.view, pixels)
         looked = (border > 0) & (facing > 0) & np.isfinite(pixels).all(axis=1)
-    texels = texels_of(seen, depth_tolerance_m)
+    texels = kept_texels(seen, depth_tolerance_m)
     index, parts = texel_taps(seen.view, pixels[looked])
     valid = parts * _agreement(texels, index, reach[looked], normal[looked], depth_tolerance_m)
     sums = valid.sum(axis=1)

@@ -88,7 +88,7 @@ class Slot:
 
     def mix(self, encoder: Any, shares: Mapping[str, float]) -> bool:
         """Adds the lamps up, if their shares are not those of the last time; whether it did."""
-        if self._mixed == shares:
+        if self._mixed == dict(shares):
             return False
         packed, self.scale = pack_shares(self.lamps, self._most_lux, shares)
         write_buffer(self.gpu, self._shares, packed)

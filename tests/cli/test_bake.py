@@ -36,7 +36,7 @@ def test_a_bake_from_start_to_end(capfd, folder):
     assert planned.code == 0
     for part in (
         "2 stated; 48×36 px, 100% of the pixels show a surface", "1: nothing moves",
-        "left (all light), right (reflected light)", "draft, 1 bounces; errors",
+        "left (all light), right (reflected light)", "draft, 1 bounce; errors",
         "4 of light, 6912 points", "with 2 workers, if nothing is kept",
     ):  # fmt: skip
         assert part in words_of(planned.err), part
@@ -68,7 +68,7 @@ def test_a_bake_from_start_to_end(capfd, folder):
 
 def test_quality_is_that_of_the_command(capfd, folder):
     planned = run_andon(capfd, "bake", "room.toml", "--dry-run", "--quality", "fine")
-    assert "fine, 1 bounces" in words_of(planned.err)
+    assert "fine, 1 bounce" in words_of(planned.err)
 
 
 def test_help_tells_errors_and_times_of_the_qualities(capfd, monkeypatch):

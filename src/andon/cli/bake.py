@@ -148,10 +148,14 @@ def _rows(plan: MapsPlan) -> list[tuple[str, str]]:
         ("moments", _moments(plan.moments)),
         (
             "quality",
-            f"{quality.name}, {plan.bounces} bounces; errors {quality.median_error:.1%} median, "
+            f"{quality.name}, {_bounces(plan.bounces)}; errors {quality.median_error:.1%} median, "
             f"{quality.p95_error:.1%} 95th percentile",
         ),
     ]
+
+
+def _bounces(count: int) -> str:
+    return "1 bounce" if count == 1 else f"{count} bounces"
 
 
 def _light(part: str) -> str:

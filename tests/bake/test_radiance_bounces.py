@@ -39,7 +39,7 @@ def mean_light(loaded, engine="reference"):
 
 @pytest.mark.parametrize(("bounces", "within"), [(0, 1e-6), (1, 2e-3), (2, 0.03), (4, 0.03)])
 def test_a_furnace_is_a_geometric_series(tmp_path, engine, bounces, within):
-    """L = ε·(1 + ρ + … + ρᵏ). Radiance's cache gives some points light of a bounce more."""
+    """L = ε·(1 + ρ + … + ρᵏ). Rays of Radiance end by chance."""
     loaded = furnace(tmp_path, 0.6, probes=RADIANCE | HAND | {"bounces": bounces})
     expected = sum(0.6**k for k in range(bounces + 1))
     light = light_of(baked(loaded, engine).volume)

@@ -18,6 +18,7 @@ from andon.quantities import Geometry
 from andon.spaces import View
 from andon.surface.stage import PLAIN, TEXTURED
 from andon.transport.baked.records import moments_text, settings_text
+from andon.transport.baked.stage import FRAME_VARIANTS as BAKED_VARIANTS
 from andon.transport.baked.stage import MOMENTS, SETTINGS
 from andon.transport.direct.balls.buffers import BALLS, NO_BALLS, PAIRS, pairs_code
 from andon.transport.direct.balls.model import GlassBall
@@ -133,6 +134,8 @@ VARIANTS = {
         for name in ("fisheye", "latlong")
     },
     "probes of objects": PROBE_VARIANTS["object"],
+    "baked light": BAKED_VARIANTS["all"],
+    "baked light beside probes": BAKED_VARIANTS["beside probes"],
     "baked maps, one": baked(1, 1, "blend", "pinhole"),
     "baked maps, the first valid": baked(3, 1, "first_valid", "latlong", "fisheye"),
     "baked maps, many of two moments": baked(12, 2, "blend", "latlong", "pinhole"),

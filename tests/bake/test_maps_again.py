@@ -7,7 +7,6 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from andon.bake.maps import bake_maps
@@ -257,7 +256,7 @@ def driver(folder):
 
 @pytest.mark.parametrize("count", [0, 1, 3, 5])
 def test_a_killed_bake_goes_on(tmp_path, count):
-    """kill -9 of the driver once `count` maps are there: then the rest alone, and the same bytes."""
+    """kill -9 once `count` maps are there; then the rest alone is done, to the same bytes."""
     whole, killed = tmp_path / "whole", tmp_path / "killed"
     for folder in (whole, killed):
         folder.mkdir()
@@ -282,4 +281,3 @@ def test_a_killed_bake_goes_on(tmp_path, count):
     repeated = [name for name in before if times.get(name) != before[name]]
     assert repeated == []
     assert artefacts(killed / "maps") == artefacts(whole / "maps")
-    assert np.isfinite(report.elapsed_seconds)

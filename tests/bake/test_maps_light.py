@@ -154,18 +154,16 @@ def test_what_does_not_change_is_one_file_for_all_moments(tmp_path):
 
 def test_what_casts_no_shadow_is_lit_and_hides_nothing(tmp_path):
     tables = moving_tables(tmp_path, casts_shadow=False, key=[], position=[0, 0, 1])
-    shown = CAMERAS[:1]
+    tables["baked"]["bounces"] = 0  # light that rays find by chance differs from point to point
     bake(room_scene(tmp_path, **tables))
     (with_it,) = baked_moment(tmp_path / "maps")
-    bake(room_scene(tmp_path, baked={"camera": shown, "folder": "empty"}))
+    bake(room_scene(tmp_path, baked=tables["baked"] | {"folder": "empty"}))
     (without,) = baked_moment(tmp_path / "empty")
     own = with_it.depth_m < without.depth_m - 1e-3
     assert own.sum() > 50
     assert with_it.lux["left"][own].max() > 0
     np.testing.assert_array_equal(with_it.depth_m[~own], without.depth_m[~own])
-    # Rays of reflected light are drawn point by point, so equal up to their noise.
-    ratio = with_it.lux["left"][~own] / without.lux["left"][~own]
-    assert np.median(np.abs(ratio - 1)) < 0.01
+    np.testing.assert_array_equal(with_it.lux["left"][~own], without.lux["left"][~own])
 
 
 def test_a_lamp_that_moves_is_baked_at_each_moment(tmp_path):

@@ -1,10 +1,5 @@
 """Bounces by Radiance: closed forms, truths, what cannot be, and that nothing done is lost."""
 
-import os
-import signal
-import subprocess
-import sys
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +8,7 @@ from worlds_of_probes import furnace, lamp_room, scene_of
 
 import andon.bake.radiance_bounces as pass_module
 from andon.bake import bake_file, bake_probes
-from andon.bake.tasks import LocalWorkers
+from andon.bake.tasks import DaskWorkers, LocalWorkers
 from andon.bake.to_file import placed_in
 from andon.engines.cubes import cube_engine, cube_setting
 from andon.engines.cubes_radiance import light_scenes, photographed_geometry, seen_points
@@ -133,6 +128,21 @@ def test_lamps_that_are_not_in_probes_are_not_traced(tmp_path):
     np.testing.assert_array_equal(one, both)
 
 
+def test_illuminance_maps_are_not_asked_for(tmp_path):
+    """A bake of probes may come before that of maps: captures take nothing from them."""
+    lamp = {"kind": "point", "position": [0.5, 1.2, -0.7], "intensity_cd": 200.0, "name": "bulb"}
+    probes = {"cube_size_px": 8} | HAND
+    plain, mapped = (
+        light_of(baked(lamp_room(tmp_path, probes=probes, **tables)).volume)
+        for tables in (
+            {"lamp": [lamp]},
+            {"lamp": [lamp | {"transport": "direct+bounce"}],
+             "baked": {"folder": "maps", "lamps": ["bulb"]}},
+        )
+    )  # fmt: skip
+    np.testing.assert_array_equal(plain, mapped)
+
+
 def test_e0_is_not_reflected_again(tmp_path):
     ambient = {"illuminance_lux": 100.0}
     once, often = (
@@ -247,6 +257,20 @@ def test_workers_trace_the_same_light(tmp_path):
     assert not (tmp_path / "probes.glb.bake").exists()
 
 
+def test_a_cluster_traces_the_same_light(tmp_path):
+    distributed = pytest.importorskip("distributed", reason="pip install 'andon[cluster]'")
+    loaded = lamp_room(tmp_path, probes=RADIANCE | HAND | {"bounces": 2})
+    alone = bake_file(loaded, engine="reference").path.read_bytes()
+    (tmp_path / "probes.glb").unlink()
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, protocol="tcp",
+        host="127.0.0.1", dashboard_address=None,
+    ) as cluster:  # fmt: skip
+        workers = DaskWorkers(cluster.scheduler_address)
+        result = bake_file(loaded, engine="reference", workers=workers)
+    assert result.path.read_bytes() == alone
+
+
 def test_what_workers_have_traced_is_kept(tmp_path, monkeypatch):
     """Stopped after the light was traced, and before it was made a result."""
     loaded = lamp_room(tmp_path, probes=RADIANCE | HAND | {"bounces": 2})
@@ -300,81 +324,3 @@ def test_a_state_by_radiance_is_added_and_its_notes_say_so(tmp_path):
     assert written.states == ("day", "night")
     notes = read_volume(written.path).notes
     assert (notes["bounces_by"], notes["bounces_quality"]) == ("radiance", "draft")
-
-
-SCENE = """
-[surface]
-mesh = "room.glb"
-
-[[lamp]]
-kind = "point"
-position = [0.5, 1.2, -0.7]
-intensity_cd = 200.0
-
-[probes]
-volume = "probes.glb"
-cube_size_px = 8
-bounces = 2
-
-[probes.placement]
-kind = "lattice"
-counts = [2, 2, 2]
-low = [-0.8, -0.8, -0.8]
-high = [0.8, 0.8, 0.8]
-"""
-
-
-def command(folder, *more):
-    arguments = ["-m", "andon", "probes", "bake", str(folder / "scene.toml")]
-    return [sys.executable, *arguments, "--engine", "reference", "--bounces-by", "radiance", *more]
-
-
-def killed(folder, how, *more):
-    """Ends a bake by a signal while light is traced; returns its exit code."""
-    kept = folder / "probes.glb.bake"
-
-    def results():
-        return len(list(kept.glob("*.probe"))) + len(list(kept.glob("traced/*.npy")))
-
-    before = max(results(), 8)
-    process = subprocess.Popen(
-        command(folder, *more), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=os.environ
-    )
-    deadline = time.monotonic() + 100
-    while results() < before + 1 and time.monotonic() < deadline:
-        assert process.poll() is None, "it ended before it could be stopped"
-        time.sleep(0.01)
-    process.send_signal(how)
-    return process.wait(60)
-
-
-def test_kill_at_any_moment_gives_the_same_bytes(tmp_path):
-    lamp_room(tmp_path)
-    (tmp_path / "scene.toml").write_text(SCENE)
-    assert killed(tmp_path, signal.SIGKILL) == -signal.SIGKILL
-    assert killed(tmp_path, signal.SIGKILL, "--workers", "2") == -signal.SIGKILL
-    assert killed(tmp_path, signal.SIGINT) == 130
-    assert not (tmp_path / "probes.glb").exists()
-    done = subprocess.run(command(tmp_path), check=True, capture_output=True, text=True)
-    assert "kept from before" in done.stderr
-    resumed = (tmp_path / "probes.glb").read_bytes()
-    (tmp_path / "probes.glb").unlink()
-    subprocess.run(command(tmp_path, "--workers", "1"), check=True, capture_output=True)
-    assert (tmp_path / "probes.glb").read_bytes() == resumed
-    assert not (tmp_path / "probes.glb.bake").exists()
-
-
-@pytest.mark.parametrize(
-    ("more", "rule"),
-    [
-        (["--bounces-by", "photons"], "must be probes or radiance"),
-        (["--workers", "0"], "must be ≥ 1"),
-        (["--workers", "1", "--scheduler", "tcp://x:1"], "excludes it"),
-    ],
-)
-def test_options_that_cannot_be_are_refused(tmp_path, more, rule):
-    lamp_room(tmp_path)
-    (tmp_path / "scene.toml").write_text(SCENE)
-    done = subprocess.run(command(tmp_path, *more), capture_output=True, text=True)
-    assert done.returncode == 2
-    assert rule in done.stderr

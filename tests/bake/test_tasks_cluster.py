@@ -9,9 +9,10 @@ import sys
 import time
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-from works_for_tasks import BUNDLES, Inline, contents, logged, task, tasks
+from works_for_tasks import BUNDLES, DIGEST, Inline, contents, logged, task, tasks
 
 from andon.bake.tasks import DaskWorkers, Store, run_tasks, tasks_status
 from andon.errors import MachineError
@@ -144,6 +145,39 @@ def test_a_scheduler_that_goes_loses_nothing_that_is_done(tmp_path, log):
     assert 3 <= kept < 12
     report = run_tasks(planned, BUNDLES, store, workers=Inline())
     assert (report.kept, report.computed) == (kept, 12 - kept)
+
+
+def test_a_worker_of_another_version_is_refused(tmp_path, monkeypatch):
+    from andon.bake.tasks import cluster_worker
+
+    inputs = cluster_worker.Inputs("inputs", BUNDLES)
+    with cluster(tmp_path / "dask", 1) as (address, _, _), monkeypatch.context() as patched:
+        patched.setattr(cluster_worker.metadata, "version", lambda name: "9")
+        with pytest.raises(MachineError, match=r"has not Andon .*, pyradiance 9: Andon .*install"):
+            run_tasks(tasks(1), BUNDLES, Store(tmp_path / "maps"), workers=DaskWorkers(address))
+        # One that comes when all others have been asked says so itself.
+        worker = SimpleNamespace(local_directory=tmp_path, address="tcp://late", plugins={})
+        inputs.setup(worker)
+        assert re.fullmatch(r"tcp://late has Andon \S+, pyradiance 9, not Andon .*", inputs.fault)
+    assert (tmp_path / "inputs" / DIGEST / "deep/er/more.txt").read_bytes() == b" of lamps"
+    inputs.teardown(worker)
+    assert not (tmp_path / "inputs").exists()
+
+
+def test_a_full_worker_says_so(tmp_path, monkeypatch):
+    from andon.bake.tasks import cluster_worker
+
+    (tmp_path / "inputs").write_bytes(b"in the way")
+    inputs = cluster_worker.Inputs("inputs", BUNDLES)
+    worker = SimpleNamespace(
+        local_directory=tmp_path, address="tcp://full", plugins={"inputs": inputs}
+    )
+    inputs.setup(worker)
+    monkeypatch.setattr(cluster_worker, "get_worker", lambda: worker)
+    outcome = cluster_worker.performed_there(tasks(1)[0], "inputs")
+    assert outcome.worker == "tcp://full"
+    assert outcome.data.kind == "machine"
+    assert "inputs: cannot be written" in outcome.data.words
 
 
 def test_nobody_at_the_address_is_said_soon(tmp_path):

@@ -113,3 +113,16 @@ def test_without_scipy(monkeypatch):
     monkeypatch.setattr(smoothing, "import_module", missing)
     with pytest.raises(MachineError, match=r"SciPy is missing; .*andon\[radiance\]"):
         smoothed(*plane(5), np.arange(5), np.ones((5, 3)), neighbours=3)
+
+
+def test_a_panel_behind_its_frame_keeps_its_light():
+    """Both face alike, 3 cm apart: nearer than the next point of the same surface."""
+    front, up = plane(4000)
+    behind, _ = plane(4000, seed=9)
+    place = np.concatenate([front, behind - 0.03 * UP])
+    normal = np.concatenate([up, up])
+    lux = np.repeat([[10.0] * 3, [1.0] * 3], 4000, axis=0)
+    chosen = chosen_points(place, normal, 800)
+    found = smoothed(place, normal, chosen, lux[chosen], neighbours=48)[:, 0]
+    assert np.median(found[4000:]) < 1.7  # 5.5 by distance alone
+    assert np.median(found[:4000]) > 9.3

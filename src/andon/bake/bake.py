@@ -343,6 +343,7 @@ class _Bake:
             surroundings_share=self._mean(first, "surroundings"),
             unscaled=unscaled_of(self.probes),
             needs_white=self._needs_white(),
+            bounces_by=self.probes.bounces_by,
         )
 
     def _mean(self, first: Sequence[Result], key: str) -> float:

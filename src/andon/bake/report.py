@@ -30,6 +30,7 @@ class BakeReport:
         photographed scene, and has the luminance E0/π.
     unscaled : panoramas whose linear value 1 is 1 cd/m² because nobody says more.
     needs_white : frames will need capture.luminance_per_unit.
+    bounces_by : what computed the bounces, "probes" or "radiance".
     """
 
     engine: str
@@ -51,3 +52,4 @@ class BakeReport:
     surroundings_share: float = 0.0
     unscaled: tuple[str, ...] = ()
     needs_white: bool = False
+    bounces_by: str = "probes"

@@ -205,7 +205,8 @@ def _print(written: Written) -> None:
     table = Table(box=None, show_header=False, pad_edge=False)
     table.add_row("engine", f"{report.engine} · {report.adapter}")
     table.add_row("probes", f"{report.probes} in {report.cells} cells")
-    table.add_row("bounces", str(report.bounces))
+    by = ", by Radiance" if report.bounces_by == "radiance" else ""
+    table.add_row("bounces", f"{report.bounces}{by}")
     table.add_row("states", ", ".join(written.states))
     seconds = f", {report.seconds / report.captured:.3g} s each" if report.captured else ""
     kept = f", {report.kept} kept from before" if report.kept else ""

@@ -23,7 +23,7 @@ from andon.lamps import Lamp
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface.stage import GpuSurface
 from andon.transport.baked.model import BakedSeen
-from andon.transport.baked.stage import BakedBuffers
+from andon.transport.baked.stage import FRAME_VARIANTS, BakedBuffers
 from andon.transport.direct import stage as direct
 from andon.transport.probes.stage import ProbeBuffers
 
@@ -97,11 +97,7 @@ class GpuEngine:
         own = self.prepared.baked
         if own is None:
             return {}
-        folder = "andon/transport/baked"
-        found = {f"{folder}/none.wgsl": f"{folder}/picture_light.wgsl"}
-        if own.in_probes:
-            found[f"{folder}/refusing.wgsl"] = f"{folder}/refusing_probes.wgsl"
-        return found
+        return FRAME_VARIANTS["beside probes" if own.in_probes else "all"]
 
     def _receivers(self) -> dict[str, str]:
         """Shaders for what light the virtual objects take."""

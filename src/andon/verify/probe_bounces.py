@@ -200,7 +200,7 @@ def _box_light(by: By, bounces: int, engine: str, own: tuple[tuple[str, Any], ..
 def bounce_errors(
     by: By, bounces: int, /, *, truth: str = "normal", engine: str = "auto", **own: Any
 ) -> BounceErrors:
-    """Errors in the box; `own` are other arguments of `box_scene`."""
+    """Errors in the box after 2 or more bounces; `own` are other arguments of `box_scene`."""
     # Radiance asks nothing of the other probes.
     keys = tuple(own.items()) if by == "radiance" else tuple(({"side": 2} | own).items())
     light = _box_light(by, bounces, engine, keys)

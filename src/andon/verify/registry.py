@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Literal
 
 __all__ = ["STAGES", "NotShown", "Row", "rows"]
@@ -45,64 +46,41 @@ class Row:
         return figure >= self.bar if self.at_least else figure <= self.bar
 
 
+# Modules of `andon.verify.rows`, stage by stage.
+IN_ORDER = (
+    "relight",
+    "areas",
+    "area_scene",
+    "penumbra",
+    "synthetic",
+    "lampshade",
+    "photometry",
+    "probe_capture",
+    "probe_bounces",
+    "harmonics",
+    "probe_light",
+    "probe_space",
+    "baked",
+    "baked_projection",
+    "baked_quality",
+    "gaze",
+    "glass",
+    "glass_blur",
+    "glass_frame",
+    "caustic",
+    "glare_flicker",
+    "glare_frame",
+    "glare_picture",
+    "glare_whole",
+    "glare_sources",
+    "glare_highlights",
+    "glare_models",
+    "glare_needles",
+    "glare_numbers",
+)
+
+
 def rows() -> tuple[Row, ...]:
     """All rows, stage by stage."""
-    from andon.verify.rows import (
-        area_scene,
-        areas,
-        baked,
-        caustic,
-        gaze,
-        glare_flicker,
-        glare_frame,
-        glare_highlights,
-        glare_models,
-        glare_needles,
-        glare_numbers,
-        glare_picture,
-        glare_sources,
-        glare_whole,
-        glass,
-        glass_blur,
-        glass_frame,
-        harmonics,
-        lampshade,
-        penumbra,
-        photometry,
-        probe_bounces,
-        probe_capture,
-        probe_light,
-        probe_space,
-        relight,
-        synthetic,
-    )
-
-    return (
-        *relight.ROWS,
-        *areas.ROWS,
-        *area_scene.ROWS,
-        *penumbra.ROWS,
-        *synthetic.ROWS,
-        *lampshade.ROWS,
-        *photometry.ROWS,
-        *probe_capture.ROWS,
-        *probe_bounces.ROWS,
-        *harmonics.ROWS,
-        *probe_light.ROWS,
-        *probe_space.ROWS,
-        *baked.ROWS,
-        *gaze.ROWS,
-        *glass.ROWS,
-        *glass_blur.ROWS,
-        *glass_frame.ROWS,
-        *caustic.ROWS,
-        *glare_flicker.ROWS,
-        *glare_frame.ROWS,
-        *glare_picture.ROWS,
-        *glare_whole.ROWS,
-        *glare_sources.ROWS,
-        *glare_highlights.ROWS,
-        *glare_models.ROWS,
-        *glare_needles.ROWS,
-        *glare_numbers.ROWS,
-    )
+    modules = (import_module(f"andon.verify.rows.{name}") for name in IN_ORDER)
+    return tuple(row for module in modules for row in module.ROWS)

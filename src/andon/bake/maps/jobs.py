@@ -19,9 +19,10 @@ from andon.bake.maps.work import (
 )
 from andon.bake.tasks.model import Bundle, Task
 from andon.engines.digest import digest
-from andon.lamps import HemisphereLamp, Lamp, SkyLamp
+from andon.lamps import Lamp
 from andon.quantities import Photometry
 from andon.spaces import View
+from andon.transport.baked.radiance.lamps import is_distant_glow
 from andon.transport.baked.radiance.scene import radiance_bundle
 
 __all__ = ["Jobs", "jobs_of"]
@@ -140,7 +141,7 @@ class _Maker:
 
 def _direct_bounces(lamps: tuple[Lamp, ...]) -> int:
     """Rays of the hemisphere find a sky of glow; every other lamp is aimed at."""
-    return int(any(isinstance(lamp, SkyLamp | HemisphereLamp) for lamp in lamps))
+    return int(any(is_distant_glow(lamp) for lamp in lamps))
 
 
 def _radiance_version() -> str:

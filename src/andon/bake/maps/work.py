@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -96,10 +97,14 @@ def light(inputs: Mapping[str, Path], settings: Mapping[str, Any], /) -> bytes:
     return light_bytes(lux, photometry=settings["photometry"])
 
 
+# What was measured of a quality, and changes nothing.
+MEASURED = ("median_error", "p95_error", "seconds_per_100k_points")
+
+
 def quality_settings(name: str, /) -> dict[str, Any]:
-    """What a quality changes in results: not what was measured of it."""
-    quality = QUALITIES[name]
-    return {"name": name, "options": quality.options(0)}
+    """All of a quality that results depend on, as settings of a task."""
+    known = asdict(QUALITIES[name])
+    return {key: value for key, value in known.items() if key not in MEASURED}
 
 
 def _npy(values: NDArray[Any]) -> bytes:

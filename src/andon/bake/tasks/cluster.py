@@ -119,8 +119,8 @@ class DaskWorkers:
         for worker, found in client.run(version, on_error="return").items():
             if found != version():
                 raise MachineError(
-                    f"the Dask worker {worker} has no Andon {version()}: {found}",
-                    remedy="install the same version there",
+                    f"the Dask worker {worker} has not {version()}: {found}",
+                    remedy="install the same versions there",
                 )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Mapping
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +18,14 @@ __all__ = ["Inputs", "performed_there", "version"]
 
 
 def version() -> str:
-    """Andon's on this machine."""
+    """Of what computes on this machine: another one may give other bytes for the same key."""
     from andon import __version__
 
-    return __version__
+    try:
+        radiance = metadata.version("pyradiance")
+    except metadata.PackageNotFoundError:
+        radiance = "none"
+    return f"Andon {__version__}, pyradiance {radiance}"
 
 
 class Inputs(WorkerPlugin):
@@ -32,11 +37,12 @@ class Inputs(WorkerPlugin):
     Attributes
     ----------
     folders : digest → folder, on a worker.
-    fault : why there are none; a worker with a full disk still starts, and says so task by task.
+    fault : why it is of no use; a worker with a full disk, or one of another version that comes
+        later, still starts, and says so task by task.
     """
 
     def __init__(self, name: str, bundles: Mapping[str, Bundle]) -> None:
-        self.name = name
+        self.name, self.version = name, version()
         self.bundles = {digest: dict(bundle) for digest, bundle in bundles.items()}
         self.folders: dict[str, Path] = {}
         self.fault: str | None = None
@@ -44,6 +50,8 @@ class Inputs(WorkerPlugin):
 
     def setup(self, worker: Any) -> None:
         """Writes the folders."""
+        if version() != self.version:
+            self.fault = f"{worker.address} has {version()}, not {self.version}"
         self._root = Path(worker.local_directory).resolve() / self.name
         try:
             for digest, bundle in self.bundles.items():

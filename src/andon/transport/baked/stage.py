@@ -32,10 +32,17 @@ from andon.transport.baked.records import (
 )
 from andon.transport.baked.slots import Slot
 
-__all__ = ["BAKED_PICTURE", "MOMENTS", "SETTINGS", "BakedBuffers", "BakedPicture"]
+__all__ = ["BAKED_PICTURE", "FRAME_VARIANTS", "MOMENTS", "SETTINGS", "BakedBuffers", "BakedPicture"]
 
 _FOLDER = "andon/transport/baked"
 BAKED_PICTURE = f"{_FOLDER}/picture.wgsl"
+# What stands in for none.wgsl in frames: baked light for all that lamps light, and beside probes
+# whose light has the same reflections in it.
+_TAKEN = {f"{_FOLDER}/none.wgsl": f"{_FOLDER}/picture_light.wgsl"}
+FRAME_VARIANTS = {
+    "all": _TAKEN,
+    "beside probes": _TAKEN | {f"{_FOLDER}/refusing.wgsl": f"{_FOLDER}/refusing_probes.wgsl"},
+}
 SETTINGS, MOMENTS = f"{_FOLDER}/settings.wgsl", f"{_FOLDER}/moments.wgsl"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence, Set
 from typing import Any
 
-from andon.gpu.bindings import bind_group
+from andon.gpu.bindings import BindGroup, bind_group
 from andon.gpu.device import Gpu
 from andon.gpu.textures import uniform_buffer, write_buffer
 from andon.lamps import Lamp
@@ -93,7 +93,11 @@ class DirectStage:
         }
         self._lamps = uniform_buffer(gpu, LAMP_RECORD.dtype.itemsize * MAX_LAMPS, "lamps")
         self._settings = uniform_buffer(gpu, DIRECT_RECORD.dtype.itemsize, "direct")
-        self.group = bind_group(
+        self.group = self._group(luminaires)
+
+    def _group(self, luminaires: LuminaireTables) -> BindGroup:
+        gpu = self.gpu
+        return bind_group(
             gpu,
             {
                 0: ("uniform", self._lamps),

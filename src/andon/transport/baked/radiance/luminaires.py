@@ -32,7 +32,7 @@ POINT_RADIUS_M = 1e-4
 # Of a luminaire A1…A9 are its axes C = 0, C = 90 and up; A10…A13 the ends of its angles, A14 how
 # far beyond them is rounding.
 POINT_FILE = "lamps.cal"
-POINT_CAL = """{ Intensities of lamps; 1 is the largest. }
+_LUMINAIRES = """{ Intensities of lamps; 1 is the largest. }
 
 spot_ramp = bound(0, A5 - A4*(Dx*A1 + Dy*A2 + Dz*A3), 1);
 spot_share = spot_ramp * spot_ramp;
@@ -58,7 +58,7 @@ lum_held_v(a) = bound(arg(12), a, arg(13));
 """
 # For each photometric type, what Radiance asks for: the two angles, held within those of the
 # file, and what becomes of the value that it finds there.
-POINT_CAL += "".join(
+POINT_CAL = _LUMINAIRES + "".join(
     f"""
 lum_{kind}_at_h = lum_held_h(lum_{kind}_h);
 lum_{kind}_at_v = lum_held_v(lum_{kind}_v);

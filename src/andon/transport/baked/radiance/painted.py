@@ -42,7 +42,7 @@ def with_triangle_reflectance(
     count = len(geometry.triangles)
     if values.shape != (count, 3):
         raise InputError(f"must be ({count}, 3), got {values.shape}", field="rgb")
-    known = np.isfinite(values).all(axis=1)
+    known = np.asarray(np.isfinite(values).all(axis=1))
     if ((values[known] < 0) | (values[known] > 1)).any():
         raise InputError("must be 0…1", field="rgb", remedy="divide luminance·π by illuminance")
     mean = values[known].mean(axis=0) if known.any() else np.full(3, 0.5)

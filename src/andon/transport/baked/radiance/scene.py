@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
 
 from andon.files.radiance_programs import run_radiance
 from andon.lamps import Body, Lamp, PointLamp
@@ -16,9 +15,6 @@ from andon.transport.baked.radiance.luminaires import POINT_CAL, POINT_FILE
 from andon.transport.baked.radiance.materials import MIX_CAL, MIX_FILE
 from andon.transport.baked.radiance.surfaces import surfaces_of, without_near
 from andon.transport.baked.radiance.textures import TEXTURE_CAL, TEXTURE_FILE
-
-if TYPE_CHECKING:
-    from andon.bake.tasks.model import Bundle
 
 __all__ = ["BOUNCE_OCTREE", "OCTREE", "radiance_bundle"]
 
@@ -44,9 +40,11 @@ def radiance_bundle(
     black: bool = False,
     tiles: int = TILES,
     time_limit_seconds: float = LIMIT_SECONDS,
-) -> Bundle:
-    """The files from which `rtrace`, run in their folder, computes ``scene.oct``, the scene with
-    its lamps in all detail, and ``bounce.oct``, for the light that surfaces reflect.
+) -> dict[str, bytes]:
+    """Name → contents of the files from which `rtrace`, run in their folder, computes.
+
+    ``scene.oct`` has the lamps in all detail, ``bounce.oct`` of few tiles, for the light that
+    surfaces reflect.
 
     Identical inputs give identical bytes.
 
@@ -93,7 +91,7 @@ def radiance_bundle(
 
 def _built(
     files: dict[str, bytes], meshes: Mapping[str, bytes], more: list[str], limit: float
-) -> Bundle:
+) -> dict[str, bytes]:
     """The files, the meshes and the octrees that Radiance's programs make of them.
 
     `more` : names of scene texts beside Andon's own.

@@ -27,7 +27,9 @@ Float = NDArray[np.float64]
 # Metres that a unit of normals counts as: a right angle is as far as 0.7 m.
 NORMAL_M = 0.5
 # Of the mean squared distance: keeps slopes from following noise, or points on a line.
-RIDGE = 0.05
+RIDGE = 0.1
+# Of the neighbours' reach: farther off the tangent plane they count less than half.
+OFF_PLANE = 0.05
 # Points of which neighbours are looked up at a time, for memory.
 BLOCK = 16384
 
@@ -89,6 +91,9 @@ def _fit(offset: Float, normal: Float, distance: Float, lux: Float) -> Float:
     """(n, 3) value at offset 0 of linear fits to lux (n, k, 3) at offsets (n, k, 3)."""
     reach = distance[:, -1:] * 1.001 + 1e-9
     weight = (1 - (distance / reach) ** 2) ** 2
+    # What lies before or behind the tangent plane is another surface: a panel behind its frame.
+    off = np.abs(np.einsum("nki,ni->nk", offset, normal))
+    weight = weight / (1 + (off / (OFF_PLANE * reach)) ** 4) + 1e-6
     weight = weight / weight.sum(axis=1, keepdims=True)
     across = _across(normal)
     flat = np.stack([np.einsum("nki,ni->nk", offset, axis) for axis in across], axis=-1)
@@ -109,9 +114,9 @@ def _fit(offset: Float, normal: Float, distance: Float, lux: Float) -> Float:
 def _across(normal: Float) -> tuple[Float, Float]:
     """Two unit vectors (n, 3) in the tangent plane."""
     axis = np.eye(3)[np.abs(normal).argmin(axis=1)]
-    first = np.cross(normal, axis)
+    first = np.asarray(np.cross(normal, axis), np.float64)
     first /= np.linalg.norm(first, axis=1, keepdims=True)
-    return first, np.cross(normal, first)
+    return first, np.asarray(np.cross(normal, first), np.float64)
 
 
 def _places(position: Float, normal: Float) -> Float:

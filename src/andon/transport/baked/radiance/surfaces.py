@@ -6,7 +6,7 @@ Surfaces are flat: normals that are interpolated would make a lamp shine round a
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,30 +32,32 @@ class Surfaces:
 
 def surfaces_of(parts: Sequence[Geometry], /, *, emission: bool, black: bool) -> Surfaces:
     """All materials of all parts, each with its triangles."""
-    text, pictures, meshes = "", dict[str, bytes](), dict[str, bytes]()
+    text, pictures, meshes = list[str](), dict[str, bytes](), dict[str, bytes]()
     for part, geometry in enumerate(parts):
-        count = len(geometry.triangles)
-        ids = np.zeros(count, np.int32) if geometry.material_ids is None else geometry.material_ids
-        for number, material in enumerate(geometry.materials):
-            own = geometry.triangles[ids == number]
-            if len(own) == 0:
-                continue
-            name = f"part{part}.{number}"
+        for number, own in _by_material(geometry):
+            material, name = geometry.materials[number], f"part{part}.{number}"
             place = f"parts[{part}].materials[{number}]"
             finish = finish_of(material, place, emission=emission, black=black)
             if material.texture is None or geometry.uvs is None or not finish.reflectance.any():
-                text += material_text(name, finish)
-                text += polygons_text(geometry.positions[own], name)
-                continue
-            mesh = mesh_obj(geometry, own)
-            if not mesh:
-                continue
-            pictures[f"{name}.hdr"] = _picture(material, place)
-            text += texture_text(f"{name}.t", material.texture, f"{name}.hdr")
-            text += material_text(name, finish, pattern=f"{name}.t")
-            text += f"{name} mesh {name}.m 1 {name}.rtm 0 0\n"
-            meshes[name] = mesh
-    return Surfaces(text, pictures, meshes)
+                text.append(material_text(name, finish))
+                text.append(polygons_text(geometry.positions[own], name))
+            elif mesh := mesh_obj(geometry, own):
+                pictures[f"{name}.hdr"] = _picture(material, place)
+                text.append(texture_text(f"{name}.t", material.texture, f"{name}.hdr"))
+                text.append(material_text(name, finish, pattern=f"{name}.t"))
+                text.append(f"{name} mesh {name}.m 1 {name}.rtm 0 0\n")
+                meshes[name] = mesh
+    return Surfaces("".join(text), pictures, meshes)
+
+
+def _by_material(geometry: Geometry) -> list[tuple[int, NDArray[np.int32]]]:
+    """Numbers of the materials that have triangles, and these (k, 3)."""
+    count = len(geometry.triangles)
+    ids = np.zeros(count, np.int32) if geometry.material_ids is None else geometry.material_ids
+    order = np.argsort(ids, kind="stable")
+    numbers, first = np.unique(ids[order], return_index=True)
+    parts = np.split(geometry.triangles[order], first[1:])
+    return [(int(number), own) for number, own in zip(numbers, parts, strict=False) if len(own)]
 
 
 def _picture(material: Material, field: str) -> bytes:
@@ -68,8 +70,6 @@ def _picture(material: Material, field: str) -> bytes:
 def without_near(geometry: Geometry, place: Float, radius_m: float, /) -> Geometry:
     """The geometry without triangles that lie wholly within `radius_m` of `place` (3,): a lamp's
     own socket and glass, see `Shadow.near_m`."""
-    from dataclasses import replace
-
     corners = geometry.positions[geometry.triangles] - place
     kept = (np.linalg.norm(corners, axis=2) > radius_m).any(axis=1)
     if kept.all():

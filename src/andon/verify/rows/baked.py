@@ -23,7 +23,6 @@ from andon.verify.baked_room import (
 )
 from andon.verify.ciede2000 import delta_e_2000, lab_of_linear
 from andon.verify.registry import Row
-from andon.verify.rows.baked_projection import ROWS as PROJECTION
 
 __all__ = ["ROWS", "added_error", "relit_difference"]
 
@@ -105,4 +104,4 @@ def _rows(engine: EngineName) -> tuple[Row, ...]:
     )  # fmt: skip
 
 
-ROWS: tuple[Row, ...] = (*PROJECTION, *_rows("reference"), *_rows("gpu"))
+ROWS: tuple[Row, ...] = (*_rows("reference"), *_rows("gpu"))

@@ -53,8 +53,10 @@ WIDTH, HEIGHT = 240, 135
 BOUNCES = 3
 DIMMING = 0.3
 # Pixels at which the truth is asked, each by itself; converged light of all would take hours.
-ASKED = 500
+ASKED = 250
 TRUTH = QUALITIES["normal"]
+# Of each area lamp in the truth, seen by all rays: eight are the bake's own.
+TILES = 24
 # Of the photograph's white above its brightest pixel, and above the brightest relit one.
 MARGIN = 1.02
 
@@ -129,7 +131,7 @@ def _traced(
 ) -> Float:
     """(n, 3) lux at the pixels `which` (H, W), of lamps with all their tiles in each bounce."""
     with TemporaryDirectory() as folder:
-        bundle = radiance_bundle([room()], lamps)
+        bundle = radiance_bundle([room()], lamps, tiles=TILES)
         for name, contents in (dict(bundle) | {BOUNCE_OCTREE: bundle[OCTREE]}).items():
             (Path(folder) / name).write_bytes(contents)
         seen = _seen()

@@ -82,7 +82,7 @@ def _sheet(engine: EngineName) -> None:
     write_png(Path(folder) / f"baked-{engine}.png", sheet)
 
 
-ROOM = "Radiance at 500 pixels of the furnished room, each by itself, -ab 3, 1024 rays a hemisphere"
+ROOM = "Radiance at 250 pixels of the furnished room, each by itself, -ab 3, 1024 rays a hemisphere"
 
 
 def _rows(engine: EngineName) -> tuple[Row, ...]:

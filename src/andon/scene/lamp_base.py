@@ -58,8 +58,9 @@ class LampTable(Table):
     )
     transport: Literal["direct", "baked", "direct+bounce"] = Field(
         default="direct",
-        description="How its light gets to surfaces. direct: computed in each frame. baked: all of it "
-        "from illuminance maps. direct+bounce: what surfaces reflect of it from maps. Never twice.",
+        description="How its light gets to surfaces. direct: computed in each frame. baked: all of "
+        "it from illuminance maps. direct+bounce: what surfaces reflect of it from maps. Never "
+        "twice.",
     )
     in_probes: bool = Field(
         default=True,

@@ -149,7 +149,7 @@ def true_irradiance(scene: Scene, places: Float, normals: Float, bounces: int, /
 
     Light that was reflected 1 … `bounces` times, and what emits.
     """
-    setting = cube_setting(scene, prepare(scene, drawn=False, maps=False))
+    setting = cube_setting(scene, prepare(scene, drawn=False))
     points, facing = np.repeat(places, len(normals), 0), np.tile(normals, (len(places), 1))
     rays = np.concatenate([points, facing], axis=1)
     lux = np.zeros((len(rays), 3))

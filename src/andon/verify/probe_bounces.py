@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.bake import bake_probes
+from andon.bake.tasks import write_bundle
 from andon.engines.cubes import cube_setting
 from andon.engines.cubes_radiance import LAMPS, light_scenes
 from andon.engines.prepared import prepare
@@ -156,8 +157,7 @@ def true_irradiance(scene: Scene, places: Float, normals: Float, bounces: int, /
     # What surfaces show of `bounces` reflections reaches free air after one more of Radiance's.
     for light, files in light_scenes(setting, bounces + 1).items():
         with TemporaryDirectory() as name:
-            for file, contents in files.items():
-                (Path(name) / file).write_bytes(contents)
+            write_bundle(Path(name), files)
             if light == LAMPS:
                 lux += _traced(Path(name), rays, bounces) - _traced(Path(name), rays, 0)
             else:

@@ -20,6 +20,7 @@ import andon
 from andon.bake.maps import bake_maps
 from andon.cli.bar import Bar
 from andon.display.false_colour import GAP_PX, contact_sheet, false_colour, top_of
+from andon.display.reference import tone_curve
 from andon.engines.prepared import Prepared, prepare
 from andon.files.illuminance_maps import MANIFEST, StoredMap, read_manifest, read_moment
 from andon.files.pictures import write_png
@@ -31,8 +32,8 @@ Rgb = NDArray[np.uint8]
 
 # The andon alone, and with a lamp: one bake is for both.
 FIGURE_4 = ("figure4.toml", "figure4-lamp.toml")
-# Luminance that is white in the simulated pictures: paper that the andon lights from 1 m away.
-SIMULATED_WHITE_CD_M2 = 30.0
+# Luminance that is white in the simulated pictures: white paper in 150 lx.
+SIMULATED_WHITE_CD_M2 = 50.0
 # Pixels of figure 4 for each of a map, along a row: its texels are to be seen.
 TEXEL_PX = 2
 
@@ -84,7 +85,7 @@ def figure4(engine: str) -> Rgb:
         for seen, light in zip(maps, lux, strict=True)
     ]
     relit = [drawn(name, engine).image.rgb for name in FIGURE_4]
-    white = f"white is {SIMULATED_WHITE_CD_M2:g} cd/m²"
+    white = f"white is {SIMULATED_WHITE_CD_M2:g} cd per square metre"
     captions = (
         f"(a) simulated, first camera; {white}",
         f"(b) simulated, second camera; {white}",
@@ -104,7 +105,7 @@ def simulated(prepared: Prepared, seen: StoredMap) -> Rgb:
     # Maps hold the light of what is behind a luminous body.
     own = np.zeros(there.valid.shape, bool) if there.body_id is None else there.body_id >= 0
     luminance = np.where(own[..., None], there.emitted_cd_m2, reflected)
-    return encoded(luminance / SIMULATED_WHITE_CD_M2)
+    return encoded(tone_curve(luminance / SIMULATED_WHITE_CD_M2, "hue"))
 
 
 def bake(scene: andon.Scene, quality: str | None) -> None:

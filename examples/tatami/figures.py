@@ -98,6 +98,18 @@ def figure4(engine: str) -> Rgb:
     return contact_sheet(tiles, columns=2, gap_px=GAP_PX)
 
 
+def reflections(engine: str) -> Rgb:
+    """The andon's direct light alone, and all that the room makes of it."""
+    scene = andon.load_scene(HERE / FIGURE_4[0])
+    direct = tuple(lamp.model_copy(update={"transport": "direct"}) for lamp in scene.lamp)
+    alone = scene.model_copy(update={"lamp": direct, "baked": None})
+    tiles = [
+        ("direct light alone", _shrunk(andon.render(alone, engine=engine).image.rgb)),  # type: ignore[arg-type]
+        ("baked: what the room reflects as well", _shrunk(drawn(FIGURE_4[0], engine).image.rgb)),
+    ]
+    return contact_sheet(tiles, columns=2, gap_px=GAP_PX)
+
+
 def simulated(prepared: Prepared, seen: StoredMap) -> Rgb:
     """What a map's camera sees in its light alone: ρ·E/π, and paper that is luminous itself."""
     there = surface.with_bodies(surface.see(prepared.surface, seen.view), prepared.bodies(0.0))
@@ -125,6 +137,12 @@ def _of_all_lamps(seen: StoredMap) -> NDArray[Any]:
     return np.sum(list(seen.lux.values()), axis=0)
 
 
+def _shrunk(picture: Rgb) -> Rgb:
+    """Half as wide and high."""
+    pixels = picture.reshape(picture.shape[0] // 2, 2, picture.shape[1] // 2, 2, 3)
+    return np.round(pixels.mean(axis=(1, 3))).astype(np.uint8)
+
+
 def _enlarged(values: NDArray[Any]) -> NDArray[Any]:
     """(h, w, …) with each texel `TEXEL_PX` × `TEXEL_PX` times."""
     return values.repeat(TEXEL_PX, axis=0).repeat(TEXEL_PX, axis=1)
@@ -149,7 +167,7 @@ def encoded(linear: NDArray[Any]) -> Rgb:
 
 
 def main() -> None:
-    """Writes figure3.png, figure4.png, figure5.png and andon.png."""
+    """Writes figure3.png, figure4.png, reflections.png, figure5.png and andon.png."""
     parser = argparse.ArgumentParser(description="Remakes the figures.")
     parser.add_argument("-o", "--out", type=Path, required=True, help="folder to write to")
     parser.add_argument("--engine", default="auto", help="auto, gpu or reference")
@@ -161,6 +179,7 @@ def main() -> None:
     makers: dict[str, Callable[[], Rgb]] = {
         "figure3.png": lambda: figure3(drawn("figure3.toml", engine)),
         "figure4.png": lambda: figure4(engine),
+        "reflections.png": lambda: reflections(engine),
         "figure5.png": lambda: figure5(drawn("figure5.toml", engine)),
         "andon.png": lambda: drawn("andon.toml", engine).image.rgb,
     }

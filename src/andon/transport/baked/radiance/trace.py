@@ -26,7 +26,7 @@ from andon.transport.baked.model import Part
 from andon.transport.baked.radiance.quality import FEW_POINTS, Quality
 from andon.transport.baked.radiance.smoothing import chosen_points, smoothed
 
-__all__ = ["traced_illuminance", "traced_luminance"]
+__all__ = ["traced_illuminance"]
 
 Float = NDArray[np.float64]
 
@@ -92,27 +92,6 @@ def traced_illuminance(
             found = smoothed(places, facing, chosen, found, neighbours=quality.neighbours)
         result = result + found
     return result.astype(np.float32)
-
-
-def traced_luminance(
-    folder: Path,
-    origins: NDArray[Any],
-    directions: NDArray[Any],
-    /,
-    *,
-    quality: Quality,
-    bounces: int,
-    time_limit_seconds: float = 3600.0,
-) -> NDArray[np.float32]:
-    """(n, 3) cd/m² that arrive at `origins` (n, 3) metres from `directions` (n, 3), lamps included.
-
-    Parameters and errors as in `traced_illuminance`.
-    """
-    places, looking = _triples(origins, "origins"), _directions(directions, "directions")
-    _check(places, looking, "directions", bounces)
-    rays = np.concatenate([places, looking], axis=1)
-    words = [*FIXED, *quality.options(bounces, alone=True)]
-    return _traced(folder, words, rays, time_limit_seconds, OCTREE).astype(np.float32)
 
 
 def _triples(values: NDArray[Any], field: str) -> Float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Mapping
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from distributed import WorkerPlugin, get_worker
 from andon.bake.tasks.inputs import write_bundle
 from andon.bake.tasks.model import Bundle, Task
 from andon.bake.tasks.outcomes import Fault, Outcome, performed
+from andon.files.radiance_programs import radiance_version
 
 __all__ = ["Inputs", "performed_there", "version"]
 
@@ -21,11 +21,7 @@ def version() -> str:
     """Of what computes on this machine: another one may give other bytes for the same key."""
     from andon import __version__
 
-    try:
-        radiance = metadata.version("pyradiance")
-    except metadata.PackageNotFoundError:
-        radiance = "none"
-    return f"Andon {__version__}, pyradiance {radiance}"
+    return f"Andon {__version__}, pyradiance {radiance_version()}"
 
 
 class Inputs(WorkerPlugin):

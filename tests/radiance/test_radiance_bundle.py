@@ -31,7 +31,7 @@ def painted():
 def whole():
     ball = SphereLamp("ball", LIGHT, np.array([-1, 1, 0.5]), 0.1)
     lamps = [PointLamp("p", AT, LIGHT), LAMPS["type C"], LAMPS["spot"]]
-    include = {"more.rad": b"void plastic red 0 0 5 .5 0 0 0 0\nred sphere s 0 0 4 0 1 0 .1\n"}
+    include = {"include0.rad": b"void plastic red 0 0 5 .5 0 0 0 0\nred sphere s 0 0 4 0 1 0 .1\n"}
     return radiance_bundle([open_room(), painted()], lamps, [body_of(ball)], include=include)
 
 
@@ -60,7 +60,7 @@ def test_included_things_stand_in_the_scene():
     lamp = PointLamp("p", AT, LIGHT)
     ball = b"void plastic black 0 0 5 0 0 0 0 0\nblack sphere s 0 0 4 0.9 1.7 0.9 .3\n"
     lit = lux_of(radiance_bundle([open_room()], [lamp]), points, normals)
-    dark = lux_of(radiance_bundle([open_room()], [lamp], include={"b": ball}), points, normals)
+    dark = lux_of(radiance_bundle([open_room()], [lamp], include={"b.rad": ball}), points, normals)
     assert (lit > 0).all()
     assert not dark.any()
 

@@ -28,8 +28,6 @@ def test_baked_lamps_light_as_direct_ones(tmp_path, engine):
     median, most = relative(frame.illuminance.lux, truth, frame.baked.covered)
     assert median < 0.005, "of a map of 160×120, from elsewhere"
     assert most < 0.1, "edges of shadows"
-    # All light is in the maps: where none sees the surface there is none.
-    assert np.all(frame.illuminance.lux[frame.baked.uncovered] == 0)
 
 
 def test_each_lamp_counts_once(tmp_path, engine):

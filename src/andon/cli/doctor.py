@@ -81,14 +81,24 @@ def findings() -> list[Finding]:
         Finding("rays (embreex)", _package("embreex"), "pip install embreex", "shadows, tracing"),
         Finding("EXR", _exr(), "pip install OpenEXR", "illuminance maps"),
         Finding("OpenCV", _package("opencv-python-headless"), "pip install andon", "lenses"),
-        Finding("SciPy", _package("scipy"), "pip install 'andon[probes]'", "baking light probes"),
+        Finding(
+            "SciPy", _package("scipy"), "pip install 'andon[probes]'", "andon bake, probes bake"
+        ),
         Finding(
             "Numba",
             _package("numba"),
             "pip install 'andon[probes]'",
             "fast lookups of many points (NumPy does without)",
         ),
-        Finding("Radiance", _rtrace(), "pip install 'andon[radiance]'", "andon verify, bench"),
+        Finding(
+            "Radiance", _rtrace(), "pip install 'andon[radiance]'", "andon bake, verify, bench"
+        ),
+        Finding(
+            "Dask",
+            _package("distributed"),
+            "pip install 'andon[cluster]'",
+            "bakes on many machines",
+        ),
         Finding("pygfx", _package("pygfx"), "pip install 'andon[bench]'", "andon bench"),
     ]
 

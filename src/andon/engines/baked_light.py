@@ -28,6 +28,7 @@ from andon.scene import Scene
 from andon.surface.model import SurfaceModel
 from andon.transport.baked.model import BakedLight, BakedMoment, BakedSeen
 from andon.transport.baked.reference import illuminance_at
+from andon.transport.baked.rims import with_rims
 
 __all__ = [
     "SceneBaked",
@@ -70,10 +71,12 @@ class SceneBaked:
         """What the maps give to a view's surface at one time."""
         asked = self.asked(surface, model)
         lux, covered = np.zeros((*surface.view.shape, 3)), np.zeros(surface.view.shape, bool)
-        lux[asked], covered[asked] = illuminance_at(
-            self.light, time_seconds, surface.position[asked], surface.normal[asked]
+        there = surface.valid
+        lux[there], covered[there] = illuminance_at(
+            self.light, time_seconds, surface.position[there], surface.normal[there]
         )
-        return BakedSeen(lux, covered, asked)
+        lux = with_rims(lux, covered, surface, self.light.depth_tolerance_m)
+        return BakedSeen(np.where(asked[..., None], lux, 0.0), covered & asked, asked)
 
 
 def undirected(scene: Scene, /) -> frozenset[str]:

@@ -77,7 +77,7 @@ class BakedSeen:
 
     Attributes
     ----------
-    lux : (H, W, 3) lx; 0 where no map is valid.
+    lux : (H, W, 3) lx; where no map is valid that of a rim (rims.py), or 0.
     covered : (H, W) a map is valid there.
     asked : (H, W) pixels that take baked light: surfaces, but no luminous bodies.
     """

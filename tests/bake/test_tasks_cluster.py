@@ -16,8 +16,9 @@ from works_for_tasks import BUNDLES, DIGEST, Inline, contents, logged, task, tas
 
 from andon.bake.tasks import DaskWorkers, Store, Task, bundle_digest, run_tasks, tasks_status
 from andon.errors import MachineError
+from requirements import missing, required
 
-distributed = pytest.importorskip("distributed", reason="pip install 'andon[cluster]'")
+distributed = required("distributed")
 
 
 @contextmanager
@@ -233,8 +234,9 @@ def certificates(folder):
     return cert, cert, key
 
 
-@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificates")
 def test_certificates_keep_others_out(tmp_path, log):
+    if shutil.which("openssl") is None:
+        missing("openssl makes the certificates")
     ca, cert, key = certificates(tmp_path)
     security = ("--tls-ca-file", ca, "--tls-cert", cert, "--tls-key", key)
     with cluster(tmp_path / "dask", 1, *security) as (address, _, _):

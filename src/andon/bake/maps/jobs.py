@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from importlib.metadata import PackageNotFoundError, version
 
 from andon.bake.maps.bundles import Bundles
 from andon.bake.maps.plan import Planned
@@ -19,6 +18,7 @@ from andon.bake.maps.work import (
 )
 from andon.bake.tasks.model import Bundle, Task
 from andon.engines.digest import digest
+from andon.files.radiance_programs import radiance_version
 from andon.lamps import Lamp
 from andon.quantities import Photometry
 from andon.spaces import View
@@ -105,7 +105,7 @@ class _Maker:
     def __init__(self, planned: Planned, photometry: Photometry, bundles: Bundles) -> None:
         self.plan, self.world, self.include = planned.plan, planned.world, planned.include
         self.bundles, self.photometry = bundles, photometry
-        self.programs = _radiance_version()
+        self.programs = radiance_version()
         self.still = digest(list(self.world.still))
 
     def settings(self, lamp: str, view: View, direct_bounces: int) -> dict[str, object]:
@@ -155,11 +155,3 @@ class _Maker:
 def _direct_bounces(lamps: tuple[Lamp, ...]) -> int:
     """Rays of the hemisphere find a sky of glow; every other lamp is aimed at."""
     return int(any(is_distant_glow(lamp) for lamp in lamps))
-
-
-def _radiance_version() -> str:
-    """Of the wheel whose programs are used; results of another one are computed again."""
-    try:
-        return version("pyradiance")
-    except PackageNotFoundError:
-        return "unknown"

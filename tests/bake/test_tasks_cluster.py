@@ -153,7 +153,7 @@ def test_a_worker_of_another_version_is_refused(tmp_path, monkeypatch):
 
     inputs = cluster_worker.Folders("inputs")
     with cluster(tmp_path / "dask", 1) as (address, _, _), monkeypatch.context() as patched:
-        patched.setattr(cluster_worker.metadata, "version", lambda name: "9")
+        patched.setattr(cluster_worker, "radiance_version", lambda: "9")
         with pytest.raises(MachineError, match=r"has not Andon .*, pyradiance 9: Andon .*install"):
             run_tasks(tasks(1), BUNDLES, Store(tmp_path / "maps"), workers=DaskWorkers(address))
         # One that comes when all others have been asked says so itself.

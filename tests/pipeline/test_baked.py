@@ -15,6 +15,7 @@ from andon.files.illuminance_maps import (
     geometry_bytes,
     light_bytes,
     map_file,
+    read_manifest,
     write_manifest,
 )
 from andon.files.pictures import write_png
@@ -240,6 +241,83 @@ def test_what_changed_since_the_bake_is_said(tmp_path):
     (note,) = [note for note in prepare(other).surface.notes if "changed" in note]
     assert "the lamp ball" in note
     assert "what stands in it" not in note
+
+
+def changes_of(scene):
+    return [note for note in prepare(scene).surface.notes if "changed" in note]
+
+
+def facts_of_all(scene, moments=(0.0,)):
+    prepared = prepare(scene, maps=False)
+    return map_facts(
+        scene, prepared.surface, prepared.lamps(0.0), moments=moments,
+        frames=prepared.frames, ambient=prepared.ambient,
+    )  # fmt: skip
+
+
+def test_another_photograph_is_said_where_surfaces_have_its_reflectance(tmp_path):
+    scene = world(tmp_path, {"ball": "baked"})
+    bake_direct_light(scene, tmp_path / "maps", {"ball": "all"}, facts=facts_of_all(scene))
+    assert changes_of(scene) == []
+    brighter = scene.model_copy(
+        update={"ambient": scene.ambient.model_copy(update={"illuminance_lux": 300.0})}
+    )
+    assert changes_of(brighter) == [], "white and E0 go up together: the reflectance stays"
+    stated = brighter.model_copy(
+        update={"capture": scene.capture.model_copy(update={"luminance_per_unit": 64.0})}
+    )
+    (note,) = changes_of(stated)
+    assert "baked: the photograph, or E0; andon bake" in note
+    write_png(tmp_path / "photo.png", np.full((48, 64, 3), 140, np.uint8))
+    (note,) = changes_of(scene)
+    assert "baked: the photograph, or E0; andon bake" in note
+
+
+def test_a_dimmed_photograph_is_no_change(tmp_path):
+    scene = world(tmp_path, {"ball": "baked"})
+    dimmed = scene.model_copy(update={"ambient": scene.ambient.model_copy(update={"dimming": 0.2})})
+    assert facts_of_all(dimmed) == facts_of_all(scene)
+
+
+def moving(key, of="object"):
+    lamp = LAMPS["ball"] | {"name": "ball", "transport": "baked", "drawn": False}
+    box = {"name": "box", "mesh": "box.obj"}
+    tables = {"lamp": [lamp | ({"key": key} if of == "lamp" else {})]}
+    tables["object"] = [box | ({"key": key} if of == "object" else {})]
+    return tables | {"scene": {"duration_seconds": 2.0}}
+
+
+@pytest.mark.parametrize(
+    ("of", "words"), [("object", "how things move in it"), ("lamp", "the lamp ball")]
+)
+def test_another_movement_is_said(tmp_path, of, words):
+    keys = [
+        [{"time_seconds": 0.0, "position": [0, 1, 0]}, {"time_seconds": 2.0, "position": [x, 1, 0]}]
+        for x in (0.3, 0.6)
+    ]
+    transports, moments = {"ball": "baked"}, (0.0, 1.0, 2.0)
+    first, second = (world(tmp_path, transports, **moving(key, of)) for key in keys)
+    facts = facts_of_all(first, moments)
+    bake_direct_light(first, tmp_path / "maps", {"ball": "all"}, facts=facts)
+    path = tmp_path / "maps" / "maps.json"
+    manifest = read_manifest(path.parent)
+    several = {(key[0], n): file for key, file in manifest.geometry.items() for n in range(3)}
+    light = {(*key[:2], n): file for key, file in manifest.light.items() for n in range(3)}
+    write_manifest(path.parent, replace(manifest, moments=moments, geometry=several, light=light))
+    assert changes_of(first) == []
+    (note,) = changes_of(second)
+    assert f"baked: {words}; andon bake" in note
+
+
+def test_movers_stay_where_they_start(tmp_path):
+    """Comparing them at later times moves none."""
+    keys = [{"time_seconds": t, "position": [t, 1, 0]} for t in (0.0, 2.0)]
+    scene = world(tmp_path, {"ball": "baked"}, **moving(keys))
+    prepared = prepare(scene, maps=False)
+    (mover,) = prepared.surface.movers
+    before = mover.geometry.positions.copy()
+    map_facts(scene, prepared.surface, prepared.lamps(0.0), moments=(0.0, 1.0, 2.0))
+    assert np.array_equal(mover.geometry.positions, before)
 
 
 def test_a_shadow_map_is_no_change(tmp_path):

@@ -33,6 +33,7 @@ def test_while_it_runs_and_when_it_is_done(store):
     assert seen[0].seconds_left is None
     assert 3 * 0.02 <= seen[1].seconds_left <= 3 * 0.2
     assert seen[4].seconds_left == 0.0
+    assert [each.last_done for each in seen] == ["", "task 0", "task 1", "task 2", "task 3"]
     after = tasks_status(store.folder)
     assert (after.done, after.running, after.pid, after.seconds_left) == (4, False, 0, None)
     assert after.bytes == sum(14 * (n + 1) + 1 for n in range(4))

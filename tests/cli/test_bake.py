@@ -1,17 +1,20 @@
 """`andon bake`: maps, status, and what it refuses."""
 
+import io
 import json
 import os
 import stat
 
 import pytest
 
-from andon.bake.maps import drive
+from andon.bake.maps import bake_maps, drive
 from andon.bake.tasks import Store
-from andon.cli.bake import duration, size
+from andon.cli.bake import size
+from andon.cli.bar import Bar
+from andon.cli.durations import duration
 from andon.files.illuminance_maps import read_manifest
 from andon.files.radiance_programs import package_folder
-from map_scenes import artefacts, room_scene, room_tables, write_room
+from map_scenes import Here, artefacts, room_scene, room_tables, write_room
 from requirements import required
 
 from .command import run_andon, run_refused
@@ -64,6 +67,67 @@ def test_a_bake_from_start_to_end(capfd, folder):
     shown = run_andon(capfd, "bake", "show", "maps", "-o", "maps.png")
     assert shown.code == 0, shown.err
     assert (folder / "maps.png").stat().st_size > 1000
+
+
+def test_what_maps_have_otherwise_than_frames_is_said_once(capfd, folder):
+    lamps = room_tables()["lamp"]
+    sky = {"name": "sky", "kind": "sky", "illuminance_lux": 50.0}
+    baked = {"lamps": ["left", "sky"], "bounces": 0}
+    lamps = [lamps[0] | {"shadow": False}, sky | {"transport": "baked"}]
+    scene = room_scene(folder, lamp=lamps, baked=baked)
+    (folder / "sky.toml").write_text(scene.to_toml())
+    for words in (["--dry-run"], ["--workers", "1"]):
+        outcome = run_andon(capfd, "bake", "sky.toml", *words)
+        assert outcome.code == 0, outcome.err
+        said = words_of(outcome.err)
+        assert said.count("left: casts no shadow in frames, but does in its maps") == 1
+        assert said.count("sky: surfaces hide this sky in its maps") == 1
+
+
+@pytest.mark.parametrize(
+    "sky",
+    [
+        {"kind": "sky", "illuminance_lux": 50.0},
+        {"kind": "hemisphere", "illuminance_lux": 50.0, "ground_illuminance_lux": 5.0},
+    ],
+)
+def test_what_is_reflected_of_a_sky_alone_is_refused(capfd, folder, sky):
+    lamp = sky | {"name": "outside", "transport": "direct+bounce"}
+    scene = room_scene(folder, lamp=[lamp], baked={"lamps": ["outside"]})
+    (folder / "sky.toml").write_text(scene.to_toml())
+    line = run_refused(capfd, folder, "bake", "sky.toml", "--dry-run")
+    assert f"lamp[0].transport: the {sky['kind']} 'outside' has no shadow in frames" in line
+    assert 'state transport = "baked"' in line
+
+
+def test_the_bar_has_the_time_left(monkeypatch):
+    from rich.console import Console
+
+    stream = io.StringIO()
+    terminal = Console(file=stream, force_terminal=True, width=120)
+    monkeypatch.setattr("rich.console.Console", lambda **_: terminal)
+    with Bar("looking") as bar:
+        bar.show(1, 4, "left, camera-1", 200.0)
+    assert "left, camera-1" in stream.getvalue()
+    assert "3 min 20 s left" in stream.getvalue()
+
+
+def test_a_bake_tells_how_long_it_takes_and_status_too(capfd, folder):
+    seen = []
+    bake_maps(
+        room_scene(folder),
+        workers=Here(),
+        progress=lambda done, of, what, left: seen.append(
+            (done, of, left, run_andon(capfd, "bake", "status", "maps").out)
+        ),
+    )
+    done, of, left, status = seen[-2]
+    assert (done, of) == (5, 6)
+    assert left > 0
+    assert "left     about" in status
+    assert "finished right, camera-1, 0 s" in status
+    assert seen[-1][2] == 0.0
+    assert seen[0][2] is None
 
 
 def test_quality_is_that_of_the_command(capfd, folder):

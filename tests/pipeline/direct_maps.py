@@ -104,7 +104,10 @@ def bake_direct_light(scene, folder, parts, *, views=None, moments=(0.0,), photo
                 file = light_bytes(lux.astype(np.float32), photometry=photometry)
                 light[name, number, index] = _written(folder, f"{name}-{number}-{index}.exr", file)
     lamps = tuple(BakedLamp(name, part) for name, part in parts.items())
-    facts = map_facts(scene, prepared.surface, prepared.at(0.0).lamps)
+    facts = map_facts(
+        scene, prepared.surface, prepared.lamps(0.0), moments=moments,
+        frames=prepared.frames, ambient=prepared.ambient,
+    )  # fmt: skip
     manifest = Manifest(
         tuple(views), tuple(moments), lamps, geometry, light, facts=facts, photometry=photometry
     )

@@ -9,6 +9,7 @@ import andon
 from andon.engines.baked_light import map_facts
 from andon.engines.prepared import prepare
 from andon.errors import InputError
+from andon.files.pictures import write_png
 from andon.pipeline import Renderer
 from andon.scene import scene_from_dict
 from pipeline.direct_maps import (
@@ -138,6 +139,77 @@ def test_what_changed_since_the_bake_is_said(tmp_path):
     (note,) = [note for note in prepare(other).surface.notes if "changed" in note]
     assert "the lamp ball" in note
     assert "what stands in it" not in note
+
+
+def changes_of(scene):
+    return [note for note in prepare(scene).surface.notes if "changed" in note]
+
+
+def facts_of_all(scene, moments=(0.0,)):
+    prepared = prepare(scene, drawn=False)
+    return map_facts(
+        scene, prepared.surface, prepared.lamps(0.0), moments=moments,
+        frames=prepared.frames, ambient=prepared.ambient,
+    )  # fmt: skip
+
+
+def test_another_photograph_is_said_where_surfaces_have_its_reflectance(tmp_path):
+    scene = world(tmp_path, {"ball": "baked"})
+    assert changes_of(scene) == []
+    brighter = scene.model_copy(
+        update={"ambient": scene.ambient.model_copy(update={"illuminance_lux": 300.0})}
+    )
+    assert changes_of(brighter) == [], "white and E0 go up together: the reflectance stays"
+    stated = brighter.model_copy(
+        update={"capture": scene.capture.model_copy(update={"luminance_per_unit": 64.0})}
+    )
+    (note,) = changes_of(stated)
+    assert "baked: the photograph, or E0; andon bake" in note
+    write_png(tmp_path / "photo.png", np.full((48, 64, 3), 140, np.uint8))
+    (note,) = changes_of(scene)
+    assert "baked: the photograph, or E0; andon bake" in note
+
+
+def test_a_dimmed_photograph_is_no_change(tmp_path):
+    scene = world(tmp_path, {"ball": "baked"})
+    dimmed = scene.model_copy(update={"ambient": scene.ambient.model_copy(update={"dimming": 0.2})})
+    assert facts_of_all(dimmed) == facts_of_all(scene)
+
+
+def moving(key, of="object"):
+    box = {"name": "box", "mesh": "box.obj"}
+    (lamp,) = lamp_tables({"ball": "baked"}, ["ball"])
+    tables = {"lamp": [lamp | ({"key": key} if of == "lamp" else {})]}
+    tables["object"] = [box | ({"key": key} if of == "object" else {})]
+    return tables | {"scene": {"duration_seconds": 2.0}}
+
+
+@pytest.mark.parametrize(
+    ("of", "words"), [("object", "how things move in it"), ("lamp", "the lamp ball")]
+)
+def test_another_movement_is_said(tmp_path, of, words):
+    keys = [
+        [{"time_seconds": 0.0, "position": [0, 1, 0]}, {"time_seconds": 2.0, "position": [x, 1, 0]}]
+        for x in (0.3, 0.6)
+    ]
+    transports, moments = {"ball": "baked"}, (0.0, 1.0, 2.0)
+    second, first = (
+        world(tmp_path, transports, moments=moments, **moving(key, of)) for key in keys[::-1]
+    )
+    assert changes_of(first) == []
+    (note,) = changes_of(second)
+    assert f"baked: {words}; andon bake" in note
+
+
+def test_movers_stay_where_they_start(tmp_path):
+    """Comparing them at later times moves none."""
+    keys = [{"time_seconds": t, "position": [t, 1, 0]} for t in (0.0, 2.0)]
+    scene = world(tmp_path, {"ball": "baked"}, **moving(keys))
+    prepared = prepare(scene, drawn=False)
+    (mover,) = prepared.surface.movers
+    before = mover.geometry.positions.copy()
+    map_facts(scene, prepared.surface, prepared.lamps(0.0), moments=(0.0, 1.0, 2.0))
+    assert np.array_equal(mover.geometry.positions, before)
 
 
 def test_a_shadow_map_is_no_change(tmp_path):

@@ -9,6 +9,7 @@ import typer
 
 from andon.cli.bar import Bar
 from andon.cli.console import Interrupted, note
+from andon.cli.durations import duration
 from andon.cli.workers import (
     CertificateOption,
     KeyOption,
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from andon.bake.maps import BakedMapsReport, MapsPlan
     from andon.scene import Scene
 
-__all__ = ["duration", "maps", "qualities", "size"]
+__all__ = ["maps", "qualities", "size"]
 
 QUALITIES = ("draft", "normal", "fine")
 
@@ -72,7 +73,10 @@ def maps(
     loaded = _with_quality(load_scene(scene), quality)
     chosen = workers_of(workers, scheduler, (tls_ca, tls_cert, tls_key))
     if dry_run:
-        _print_plan(plan_maps(loaded, trust=trust), getattr(chosen, "count", 1))
+        plan = plan_maps(loaded, trust=trust)
+        _print_plan(plan, getattr(chosen, "count", 1))
+        for difference in plan.unsaid:
+            note(difference)
         return
     try:
         with Bar("looking for cameras") as bar:
@@ -82,6 +86,8 @@ def maps(
     if report.damaged:
         note(f"{report.damaged} kept maps were not whole and are computed again")
     _print_report(report)
+    for difference in report.plan.unsaid:
+        note(difference)
     print(report.folder)
     note(f"look at them: andon bake show {report.folder}")
 
@@ -192,16 +198,6 @@ def _print_report(report: BakedMapsReport) -> None:
             ("on disk", f"{size(report.disk_bytes)}{removed}"),
         ]
     )
-
-
-def duration(seconds: float, /) -> str:
-    """Seconds as people say them: 4.2 s, 3 min 20 s, 2 h 5 min."""
-    if seconds < 60:
-        return f"{seconds:.2g} s" if seconds < 9.95 else f"{seconds:.0f} s"
-    whole = round(seconds)
-    if whole < 3600:
-        return f"{whole // 60} min {whole % 60} s"
-    return f"{whole // 3600} h {whole % 3600 // 60} min"
 
 
 def size(count: int, /) -> str:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from andon.cli.bake import duration, size
+from andon.cli.bake import size
 from andon.cli.console import printable
+from andon.cli.durations import duration
 from andon.errors import InputError
 
 if TYPE_CHECKING:
@@ -65,6 +66,8 @@ def _lines(status: TasksStatus, has_maps: bool) -> list[str]:
     lines.append(f"work     {duration(status.seconds)}, {size(status.bytes)}")
     if status.running and status.seconds_left is not None:
         lines.append(f"left     about {duration(status.seconds_left)}")
+    if status.last_done:
+        lines.append(f"finished {printable(status.last_done)}")
     if status.last is not None:
         lines.append(f"last     {status.last.astimezone():%Y-%m-%d %H:%M:%S}")
     for failure in status.failed[:SHOWN]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from andon.cli.durations import duration
+
 __all__ = ["Bar"]
 
 
@@ -18,18 +20,26 @@ class Bar:
 
     def __enter__(self) -> Bar:
         from rich.console import Console
-        from rich.progress import Progress
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
         console = Console(stderr=True)
+        columns = TextColumn("{task.description}", markup=False), BarColumn(), TaskProgressColumn()
         # Where nobody looks at it, all that is left of a bar is an empty line.
-        self._bar = Progress(console=console, transient=True, disable=not console.is_terminal)
+        self._bar = Progress(
+            *columns,
+            TextColumn("{task.fields[left]}"),
+            console=console,
+            transient=True,
+            disable=not console.is_terminal,
+        )
         self._bar.start()
-        self._task = self._bar.add_task(self._first, total=None)
+        self._task = self._bar.add_task(self._first, total=None, left="")
         return self
 
-    def show(self, done: int, of: int, what: str) -> None:
+    def show(self, done: int, of: int, what: str, seconds_left: float | None = None) -> None:
         """`done` of `of` parts are ready; `what` is the one that is being done, or was last."""
-        self._bar.update(self._task, completed=done, total=of, description=what)
+        left = "" if seconds_left is None else f"{duration(seconds_left)} left"
+        self._bar.update(self._task, completed=done, total=of, description=what, left=left)
 
     def __exit__(self, *_: object) -> None:
         self._bar.stop()

@@ -17,15 +17,16 @@ from shlex import quote
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.composite.model import Ambient
 from andon.engines.digest import digest
 from andon.engines.probes import SceneProbes, lampless_pixels, lit_pixels
 from andon.errors import InputError
 from andon.files.illuminance_maps import MANIFEST, Manifest, Part, read_manifest, read_moment
-from andon.lamps import Lamp
+from andon.lamps import Lamp, resolve_lamps
 from andon.lamps.flickering import flicker_factor
-from andon.quantities import Surface
+from andon.quantities import CameraFrame, Surface
 from andon.scene import Scene
-from andon.surface.model import SurfaceModel
+from andon.surface.model import SurfaceModel, states_reflectance
 from andon.transport.baked.model import BakedLight, BakedMoment, BakedSeen
 from andon.transport.baked.reference import illuminance_at
 from andon.transport.baked.rims import with_rims
@@ -45,6 +46,14 @@ Float = NDArray[np.float64]
 KEPT_MOMENTS = 4
 # Digits of a digest that are kept: nobody makes two scenes alike on purpose.
 DIGITS = 16
+# Of the moments of a film so many are compared.
+LOOKED_AT = 24
+# What is said of facts; of others their name.
+WORDS = {
+    "geometry": "what stands in it",
+    "movement": "how things move in it",
+    "reflectance": "the photograph, or E0",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,11 +117,19 @@ def check_counted_once(scene: Scene, probes: SceneProbes | None, model: SurfaceM
 
 
 def baked_of(
-    scene: Scene, surface: SurfaceModel, lamps: Sequence[Lamp], /, *, has_probes: bool
+    scene: Scene,
+    surface: SurfaceModel,
+    lamps: Sequence[Lamp],
+    frames: Mapping[str, CameraFrame],
+    ambient: Ambient,
+    /,
+    *,
+    has_probes: bool,
 ) -> tuple[SceneBaked | None, tuple[str, ...]]:
     """The maps that [baked] names, or None; and what is to be said of them.
 
-    `lamps` are all of the scene, at its start; `has_probes`: objects may be lit by probes. Raises
+    `lamps` are all of the scene, at its start; `frames` and `ambient` those of `Prepared`;
+    `has_probes`: objects may be lit by probes. Raises
     `InputError` where there are none yet, where one lacks a lamp of the scene, and where they hold
     other light than the scene asks for.
     """
@@ -139,7 +156,8 @@ def baked_of(
         photometry=scene.photometry,
     )
     in_probes = has_probes and any(lamp.in_probes for lamp in scene.lamp if lamp.name in parts)
-    return SceneBaked(light, in_probes), _changes(scene, manifest, surface, lamps)
+    now = map_facts(scene, surface, lamps, moments=manifest.moments, frames=frames, ambient=ambient)
+    return SceneBaked(light, in_probes), _changes(scene, manifest, now)
 
 
 def _parts(scene: Scene, manifest: Manifest) -> dict[str, Part]:
@@ -201,19 +219,81 @@ def _shares(scene: Scene, time_seconds: float) -> Mapping[str, float]:
     }
 
 
-def map_facts(scene: Scene, surface: SurfaceModel, lamps: Sequence[Lamp], /) -> dict[str, str]:
-    """What illuminance maps depend on, as texts: ``geometry``, and ``lamp <name>`` for each lamp.
+def map_facts(
+    scene: Scene,
+    surface: SurfaceModel,
+    lamps: Sequence[Lamp],
+    /,
+    *,
+    moments: Sequence[float] = (0.0,),
+    frames: Mapping[str, CameraFrame] | None = None,
+    ambient: Ambient | None = None,
+) -> dict[str, str]:
+    """What illuminance maps depend on, as texts; how a shadow map is drawn does not count.
 
-    `lamps` are all of the steady scene, at its start. How a shadow map is drawn does not count.
+    =============== ==============================================================================
+    ``geometry``    what stands there, and what moves at the start
+    ``movement``    where what moves is at some of the moments; only where something does
+    ``reflectance`` what a photograph shows of a surface that states none: its light less E0
+    ``lamp <name>`` each lamp, at the same moments
+    =============== ==============================================================================
+
+    Parameters
+    ----------
+    lamps : all of the steady scene, at its start.
+    moments : of the maps.
+    frames, ambient : the photograph and the light that it was taken in.
     """
     parts = [part for part in (surface.real, surface.objects) if len(part.triangles)]
-    moving = [mover.geometry for mover in surface.movers]
+    times = _some(moments)
+    later = [mover.at(time) for mover in surface.movers for time in times[1:]]
+    movement = digest([[part.positions, part.normals] for part in later], single=True)
+    # Last: what is asked of movers later is where they are now.
+    moving = [mover.at(times[0]) for mover in surface.movers]
     facts = {"geometry": digest(parts, moving, single=True)[:DIGITS]}
+    if later:
+        facts["movement"] = movement[:DIGITS]
+    if frames and ambient is not None and _is_photographed(surface):
+        facts["reflectance"] = _reflectance(frames, ambient)
+    every = [*lamps, *_lamps_later(scene, times[1:])]
     for table in scene.lamp:
         if table.transport != "direct":
-            own = [_unshadowed(lamp) for lamp in lamps if lamp.owner == table.name]
+            own = [_unshadowed(lamp) for lamp in every if lamp.owner == table.name]
             facts[f"lamp {table.name}"] = digest(own, single=True)[:DIGITS]
     return facts
+
+
+def _some(moments: Sequence[float]) -> list[float]:
+    """The first and last moment and some between: a film has thousands."""
+    count = min(len(moments), LOOKED_AT)
+    return [moments[round(n)] for n in np.linspace(0, len(moments) - 1, count).tolist()]
+
+
+def _is_photographed(surface: SurfaceModel) -> bool:
+    """Whether the real surface has its reflectance from the photograph."""
+    return len(surface.real.triangles) > 0 and not states_reflectance(surface.real)
+
+
+def _reflectance(frames: Mapping[str, CameraFrame], ambient: Ambient) -> str:
+    """The name of what the photograph shows of surfaces; E0 and exposure may go up together."""
+    shown = [
+        [
+            name,
+            frame.view,
+            np.pi * frame.luminance_per_unit * frame.linear / ambient.illuminance_lux,
+        ]
+        for name, frame in frames.items()
+    ]
+    return digest(shown, single=True)[:DIGITS]
+
+
+def _lamps_later(scene: Scene, times: Sequence[float]) -> list[Lamp]:
+    """Those of moving tables, at later times."""
+    moving = {table.name for table in scene.lamp if table.key or table.path is not None}
+    if not moving:
+        return []
+    steady = scene.steady()
+    return [lamp for time in times for lamp in resolve_lamps(steady, time) if lamp.owner in moving]
 
 
 def _unshadowed(lamp: Lamp) -> Lamp:
@@ -225,15 +305,13 @@ def _unshadowed(lamp: Lamp) -> Lamp:
     return replace(lamp, shadow=plain)  # type: ignore[call-arg]
 
 
-def _changes(
-    scene: Scene, manifest: Manifest, surface: SurfaceModel, lamps: Sequence[Lamp]
-) -> tuple[str, ...]:
+def _changes(scene: Scene, manifest: Manifest, now: Mapping[str, str]) -> tuple[str, ...]:
     """What is otherwise than when the maps were made."""
-    now, then = map_facts(scene, surface, lamps), manifest.facts
+    then = manifest.facts
     changed = [fact for fact, value in now.items() if fact in then and then[fact] != value]
     if not changed:
         return ()
-    words = ["what stands in it" if fact == "geometry" else f"the {fact}" for fact in changed]
+    words = [WORDS.get(fact, f"the {fact}") for fact in changed]
     return (
         f"changed since the maps were baked: {', '.join(words)}; "
         f"andon bake {quote(str(scene.file))}",

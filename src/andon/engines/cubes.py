@@ -29,7 +29,7 @@ from andon.lamps.model import LIGHT_FIELDS
 from andon.quantities import CameraFrame, Geometry
 from andon.spaces import View, pinhole_view
 from andon.surface import reference as surface
-from andon.surface.model import SurfaceModel
+from andon.surface.model import SurfaceModel, states_reflectance
 from andon.transport.probes.capture import Lighting, Seen
 from andon.transport.probes.photograph import Photograph, Picture
 
@@ -44,7 +44,6 @@ __all__ = [
     "cube_views",
     "mirrored",
     "photograph_of",
-    "states_reflectance",
 ]
 
 Float = NDArray[np.float64]
@@ -199,11 +198,6 @@ def cube_engine(setting: CubeSetting, size: int, /, engine: str = "auto") -> Cub
         if engine == "gpu":
             raise
         return ReferenceCubes(setting, size)
-
-
-def states_reflectance(real: Geometry, /) -> bool:
-    """The mesh has materials of its own; readers give a nameless one where a file has none."""
-    return any(material.name for material in real.materials)
 
 
 def _without_materials(real: Geometry) -> Geometry:

@@ -159,7 +159,9 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
     baked, about_maps = (
-        baked_of(scene, surface, lamps, has_probes=probes is not None) if drawn else (None, ())
+        baked_of(scene, surface, lamps, frames, ambient, has_probes=probes is not None)
+        if drawn
+        else (None, ())
     )
     check_counted_once(scene, probes, surface)
     notes = (*notes, *changed_since_bake(scene, probes, surface, ambient, lamps), *about_maps)

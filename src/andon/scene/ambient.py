@@ -122,7 +122,9 @@ class Baked(Table):
     include: tuple[Reference, ...] = Field(
         default=(),
         description="Radiance files (.rad) of things that are in the bake alone; metres, +Y up. "
-        "Lines that start programs (!) are refused unless `andon bake --trust`.",
+        "Files that they name come along. Those that emit light are refused: state a [[lamp]]. "
+        "Lines that start programs (!) are refused unless `andon bake --trust`; then these run "
+        "once, on the machine where the bake was started, and workers get what they print.",
     )
 
     @model_validator(mode="after")

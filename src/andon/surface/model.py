@@ -14,7 +14,7 @@ from andon.surface.movers import Mover
 from andon.surface.occluder import Occluder
 from andon.surface.placing import middle_of
 
-__all__ = ["EMPTY_GEOMETRY", "ObjectInfo", "ShadowBias", "SurfaceModel"]
+__all__ = ["EMPTY_GEOMETRY", "ObjectInfo", "ShadowBias", "SurfaceModel", "states_reflectance"]
 
 EMPTY_GEOMETRY = Geometry(np.zeros((0, 3)), np.zeros((0, 3), np.int32))
 
@@ -148,3 +148,8 @@ class SurfaceModel:
     def is_distant_only(self) -> bool:
         """No positions are known: only directional, sky and hemisphere lamps can light it."""
         return bool(self.normals) and not self.depth and len(self.real.triangles) == 0
+
+
+def states_reflectance(real: Geometry, /) -> bool:
+    """The mesh has materials of its own; readers give a nameless one where a file has none."""
+    return any(material.name for material in real.materials)

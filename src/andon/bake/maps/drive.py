@@ -28,8 +28,8 @@ __all__ = ["SUFFIX", "Progress", "bake_maps"]
 
 WRITABLE = "writable"
 SUFFIX = ".exr"
-# (done, of, what is being done, or was last)
-Progress = Callable[[int, int, str], None]
+# (done, of, what is being done or was last, seconds that are left if that is known)
+Progress = Callable[[int, int, str, float | None], None]
 
 
 def bake_maps(
@@ -119,13 +119,13 @@ def _check_folder(folder: Path) -> None:
 def _preparing(progress: Progress | None) -> Callable[[int, int], None] | None:
     if progress is None:
         return None
-    return lambda done, of: progress(done, of, "what lamps light")
+    return lambda done, of: progress(done, of, "what lamps light", None)
 
 
 def _working(progress: Progress | None) -> Callable[[TasksProgress], None] | None:
     if progress is None:
         return None
-    return lambda now: progress(now.done, now.of, now.name or "maps")
+    return lambda now: progress(now.done, now.of, now.name or "maps", now.seconds_left)
 
 
 def _manifest(scene: Scene, planned: Planned, jobs: Jobs, store: Store) -> Manifest:
@@ -159,10 +159,16 @@ class _Files:
 
 
 def _facts(planned: Planned) -> dict[str, str]:
-    """What the light depends on, at the start of the session; frames compare it with theirs."""
+    """What the light depends on; frames compare it with theirs."""
     prepared = planned.world.prepared
-    lamps = prepared.at(0.0).lamps  # first: things that move are where they were asked for last
-    return map_facts(planned.world.scene, prepared.surface, lamps)
+    return map_facts(
+        planned.world.scene,
+        prepared.surface,
+        prepared.lamps(0.0),
+        moments=planned.plan.moments,
+        frames=prepared.frames,
+        ambient=prepared.ambient,
+    )
 
 
 def _generator() -> str:

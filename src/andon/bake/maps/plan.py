@@ -16,6 +16,7 @@ from andon.scene import Scene
 from andon.scene.ambient import Baked
 from andon.spaces import View
 from andon.transport.baked.model import Part
+from andon.transport.baked.radiance.bodies import unsaid
 from andon.transport.baked.radiance.quality import QUALITIES, Quality
 
 __all__ = ["MapsPlan", "Planned", "plan_maps", "planned"]
@@ -36,6 +37,8 @@ class MapsPlan:
     parts : name of each baked lamp → what of its light is baked.
     quality : how exactly.
     bounces : how often light is reflected.
+    unsaid : what frames compute otherwise than Radiance does, a sentence for each lamp of which
+        there is something to say.
     """
 
     folder: Path
@@ -46,6 +49,7 @@ class MapsPlan:
     parts: dict[str, Part]
     quality: Quality
     bounces: int
+    unsaid: tuple[str, ...] = ()
 
     @property
     def light_tasks(self) -> int:
@@ -93,6 +97,7 @@ def planned(scene: Scene, /, *, trust: bool = False) -> Planned:
     `trust` : included Radiance files may start programs.
     """
     baked = _table(scene)
+    _check_skies(scene, baked)
     folder = _folder(scene, baked)
     included = [
         scene.path(name, f"baked.include[{number}]") for number, name in enumerate(baked.include)
@@ -114,8 +119,24 @@ def planned(scene: Scene, /, *, trust: bool = False) -> Planned:
     transports = {table.name: table.transport for table in scene.lamp}
     parts: dict[str, Part] = {name: _part(transports[name]) for name in baked.lamps}
     quality = QUALITIES[baked.quality]
-    plan = MapsPlan(folder, views, seen, coverage, moments, parts, quality, baked.bounces)
+    shining = [lamp for lamps in world.lamps(0.0).values() for lamp in lamps]
+    differs = unsaid(shining, world.bodies(0.0))
+    plan = MapsPlan(folder, views, seen, coverage, moments, parts, quality, baked.bounces, differs)
     return Planned(plan, world, include)
+
+
+def _check_skies(scene: Scene, baked: Baked) -> None:
+    """Refuses a sky of which the maps have what is reflected alone: in Radiance walls hide it."""
+    for index, table in enumerate(scene.lamp):
+        is_sky = table.kind in ("sky", "hemisphere")
+        if is_sky and table.transport == "direct+bounce" and table.name in baked.lamps:
+            raise InputError(
+                f"the {table.kind} {table.name!r} has no shadow in frames, and what walls hide of "
+                "it would be in its direct light and not in what is reflected",
+                file=scene.file,
+                field=f"lamp[{index}].transport",
+                remedy='state transport = "baked": then its maps have all of it',
+            )
 
 
 def _part(transport: str) -> Part:

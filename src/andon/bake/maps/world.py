@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.engines.cubes import photograph_of, states_reflectance
+from andon.engines.cubes import photograph_of
 from andon.engines.prepared import Prepared
 from andon.errors import InputError
 from andon.lamps import Body, Lamp, resolve_bodies, resolve_lamps
@@ -29,7 +29,7 @@ from andon.quantities import Geometry, Surface
 from andon.scene import Scene
 from andon.spaces import View
 from andon.surface import reference as surface
-from andon.surface.model import ObjectInfo, SurfaceModel
+from andon.surface.model import ObjectInfo, SurfaceModel, states_reflectance
 from andon.surface.objects import joined
 from andon.transport.baked.radiance.painted import with_triangle_reflectance
 

@@ -36,6 +36,7 @@ class TasksStatus:
     seconds : of all work on them, on whatever machine.
     seconds_left : guessed for a bake that runs; else None.
     begun, last : when the bake that ran last began, and the last event; None: never.
+    last_done : name of the task that was finished last, of those that are done; empty: none is.
     """
 
     folder: Path
@@ -49,6 +50,7 @@ class TasksStatus:
     seconds_left: float | None
     begun: datetime | None
     last: datetime | None
+    last_done: str = ""
 
 
 def tasks_status(folder: Path, /) -> TasksStatus | None:
@@ -86,6 +88,7 @@ def tasks_status(folder: Path, /) -> TasksStatus | None:
         None if pid is None or mean is None else mean * max(left / history.workers, left > 0),
         history.begun,
         history.last,
+        next((names[key] for key in reversed(history.done) if key in done), ""),
     )
 
 
@@ -107,7 +110,8 @@ class _History:
             self.given_up.clear()
             self.workers = max(_whole(event.get("workers")), 1)
         elif kind == "done":
-            self.done[key] = event
+            self.done.pop(key, None)
+            self.done[key] = event  # the last in their order
         elif kind == "given up":
             self.given_up[key] = str(event.get("reason"))
 

@@ -6,7 +6,6 @@ import pytest
 from andon.surface.objects import joined
 from andon.surface.reference import trace
 from andon.transport.baked import BakedLight, BakedMoment, baked_illuminance, illuminance_at
-from andon.transport.baked.coverage import uncovered_area, uncovered_pixels
 from baked.scenes import baked_map, candles, fisheye, latlong, pinhole, still
 from worlds import ball, block, sheet
 
@@ -247,7 +246,7 @@ def test_first_valid_follows_the_order_of_the_cameras(order):
 
 
 def test_covered_is_what_the_map_sees():
-    """Straight from above a map sees a square: that is covered, and counted, exactly."""
+    """Straight from above a map sees a square: exactly that is covered."""
     view = pinhole(64, 64, (0.3, 2.0, 0.1), (0.3, 0, 0.1 - 1e-9), 1.2)
     light = still(baked_map(FLOOR, view))
     half = 32 / view.fx * 2.0
@@ -255,11 +254,6 @@ def test_covered_is_what_the_map_sees():
     x, z = generator.uniform(-4, 4, (2, 5000))
     _, covered = asked(light, *floor_points(x, z))
     np.testing.assert_array_equal(covered, np.maximum(np.abs(x - 0.3), np.abs(z - 0.1)) < half)
-    share = 1 - (2 * half) ** 2 / 64
-    assert uncovered_area(light, FLOOR) == pytest.approx(share, abs=3 * 0.5 / 64)
-    seen = trace(FLOOR, pinhole(80, 60, (1, 3, 2), (0, 0, 0)), is_object=False)
-    square = np.abs(seen.position - (0.3, 0, 0.1))[..., [0, 2]].max(axis=-1) < half
-    np.testing.assert_array_equal(uncovered_pixels(light, seen), seen.valid & ~square)
 
 
 def test_nothing_covers_points_that_face_away():

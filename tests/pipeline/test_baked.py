@@ -1,4 +1,4 @@
-"""Frames with baked light: maps made here from lamps' direct light, so that the sum is known."""
+"""Frames with baked light: maps made from lamps' direct light, so that the sum is known."""
 
 from dataclasses import replace
 
@@ -9,112 +9,16 @@ import andon
 from andon.engines.baked_light import map_facts
 from andon.engines.prepared import prepare
 from andon.errors import InputError
-from andon.files.illuminance_maps import (
-    BakedLamp,
-    Manifest,
-    geometry_bytes,
-    light_bytes,
-    map_file,
-    write_manifest,
-)
-from andon.files.pictures import write_png
 from andon.pipeline import Renderer
 from andon.scene import scene_from_dict
-from andon.spaces import look_at, pinhole_view
-from andon.surface import reference as surface
-from andon.transport.direct import reference as direct
-from andon.transport.direct.casters import ShadowRays
-from worlds import block, write_obj
-
-LAMPS = {
-    "ball": {"kind": "sphere", "position": [0.5, 1.5, 0.2], "radius_m": 0.1, "flux_lm": 900.0},
-    "spot": {
-        "kind": "spot",
-        "position": [-1.0, 2.2, 0.5],
-        "direction": [0.4, -1.0, -0.5],
-        "intensity_cd": 90.0,
-    },
-}
-
-
-def world(folder, transports, parts=None, **tables):
-    """A room of 4 × 2.5 × 4 m with a box in it, and its scene with maps in `folder`."""
-    write_obj(folder / "room.obj", block((4, 2.5, 4), (0, 1.25, 0), inwards=True))
-    write_obj(folder / "box.obj", block((0.6, 0.6, 0.6), (0.0, 0.3, -0.9)))
-    write_png(folder / "photo.png", np.full((48, 64, 3), 120, np.uint8))
-    lamps = [
-        table | {"name": name, "transport": transports.get(name, "direct"), "drawn": False}
-        if table["kind"] == "sphere"
-        else table | {"name": name, "transport": transports.get(name, "direct")}
-        for name, table in LAMPS.items()
-    ]
-    own = {
-        "rig": {
-            "camera": {"hfov_degrees": 70.0, "position": [0, 1.4, 1.7], "look_at": [0, 0.9, 0]}
-        },
-        "capture": {"source": "photo.png"},
-        "surface": {"mesh": "room.obj"},
-        "ambient": {"illuminance_lux": 200.0},
-        "lamp": lamps,
-        "object": [{"name": "box", "mesh": "box.obj"}],
-    }
-    if transports:
-        own["baked"] = {"folder": "maps", "lamps": list(transports)}
-    (folder / "maps").mkdir(exist_ok=True)
-    scene = scene_from_dict(own | tables, folder=folder, file="scene")
-    if transports:
-        bake_direct_light(scene, folder / "maps", parts or PARTS_OF(transports))
-    return scene
-
-
-def PARTS_OF(transports):
-    return {name: "all" if word == "baked" else "bounce" for name, word in transports.items()}
-
-
-def map_views():
-    eyes = [((-1.6, 1.8, 1.6), (0.5, 0.4, -1)), ((1.6, 1.8, 1.6), (-0.5, 0.4, -1))]
-    return [
-        pinhole_view(160, 120, 80, look_at(*eye), name=f"camera {number}")
-        for number, eye in enumerate(eyes)
-    ]
-
-
-def bake_direct_light(scene, folder, parts, views=None, facts=None, photometry="absolute"):
-    """Maps that hold the direct light of each lamp, whatever `parts` call it."""
-    prepared = prepare(scene, maps=False)
-    moment = prepared.at(0.0)
-    rays = ShadowRays(prepared.casters(moment))
-    geometry, light = {}, {}
-    views = views or map_views()
-    for number, view in enumerate(views):
-        seen = surface.see(prepared.surface, view)
-        contents = geometry_bytes(seen.depth, seen.normal)
-        (folder / f"{number}.exr").write_bytes(contents)
-        geometry[number, 0] = map_file(f"{number}.exr", contents)
-        for name in parts:
-            own = [lamp for lamp in moment.lamps if lamp.owner == name]
-            bias_m = np.full(view.shape, 1e-3)
-            lux = direct.illuminate(seen, own, rays, bias_m=bias_m)
-            contents = light_bytes(lux.astype(np.float32), photometry=photometry)
-            (folder / f"{name}-{number}.exr").write_bytes(contents)
-            light[name, number, 0] = map_file(f"{name}-{number}.exr", contents)
-    lamps = tuple(BakedLamp(name, part) for name, part in parts.items())
-    if facts is None:
-        facts = map_facts(scene, prepared.surface, moment.lamps)
-    manifest = Manifest(
-        tuple(views), (0.0,), lamps, geometry, light, facts=facts, photometry=photometry
-    )
-    write_manifest(folder, manifest)
-
-
-def lux_of(scene, engine="reference"):
-    return np.asarray(andon.render(scene, engine=engine).illuminance.lux, float)
-
-
-def relative(ours, truth, covered):
-    """Median and 95th percentile of the error, of the mean light, where maps see the surface."""
-    off = np.abs(ours - truth)[covered].max(axis=-1) / truth[covered].mean()
-    return np.median(off), np.percentile(off, 95)
+from pipeline.direct_maps import (
+    bake_direct_light,
+    lamp_tables,
+    lux_of,
+    map_views,
+    relative,
+    world,
+)
 
 
 def test_baked_lamps_light_as_direct_ones(tmp_path, engine):
@@ -157,10 +61,7 @@ def test_what_lamps_do_not_light_takes_none(tmp_path, engine):
 
 
 def test_flicker_scales_the_maps(tmp_path, engine):
-    lamps = [
-        LAMPS["ball"]
-        | {"name": "ball", "transport": "baked", "drawn": False, "flicker": {"amount": 0.8}}
-    ]
+    lamps = lamp_tables({"ball": "baked"}, ["ball"], flicker={"amount": 0.8})
     tables = {"lamp": lamps, "scene": {"duration_seconds": 3.0}}
     renderer = Renderer(world(tmp_path, {"ball": "baked"}, **tables), engine)
     light = renderer.prepared.baked.light
@@ -220,18 +121,17 @@ class TestRefusals:
 
     def test_a_damaged_map(self, tmp_path):
         scene = world(tmp_path, {"ball": "baked"})
-        path = tmp_path / "maps" / "ball-0.exr"
+        path = tmp_path / "maps" / "ball-0-0.exr"
         path.write_bytes(path.read_bytes()[:-7])
         with pytest.raises(InputError) as caught:
             andon.render(scene, engine="reference")
-        assert caught.value.file.endswith("ball-0.exr")
+        assert caught.value.file.endswith("ball-0-0.exr")
 
 
 def test_what_changed_since_the_bake_is_said(tmp_path):
     scene = world(tmp_path, {"ball": "baked"})
     assert not [note for note in prepare(scene).surface.notes if "changed" in note]
-    moved = [LAMPS["ball"] | {"name": "ball", "transport": "baked", "drawn": False}]
-    moved[0] = moved[0] | {"position": [0.0, 1.5, 0.2]}
+    moved = lamp_tables({"ball": "baked"}, ["ball"], position=[0.0, 1.5, 0.2])
     other = scene.model_copy(update={"lamp": scene_from_dict(
         {"lamp": moved, "baked": {"folder": "maps", "lamps": ["ball"]}}
     ).lamp})  # fmt: skip

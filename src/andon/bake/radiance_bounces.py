@@ -34,6 +34,7 @@ from andon.bake.tasks import (
     Workers,
     bundle_digest,
     run_tasks,
+    write_bundle,
 )
 from andon.engines.cubes_radiance import SeenPoints, light_scenes, seen_points
 from andon.engines.digest import digest
@@ -81,11 +82,7 @@ class RadianceBounces:
     def __enter__(self) -> Self:
         self._temporary = TemporaryDirectory(prefix="andon-probes-")
         for name, files in self.scenes.items():
-            folder = Path(self._temporary.name) / name
-            folder.mkdir()
-            for file, contents in files.items():
-                (folder / file).write_bytes(contents)
-            self._folders[name] = folder
+            self._folders[name] = write_bundle(Path(self._temporary.name) / name, files)
         return self
 
     def __exit__(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from andon.bake.tasks import Bundle
 from andon.engines.cubes_radiance import EMITTED, LAMPS, SeenPoints
+from andon.files.pictures import npy_bytes
 from andon.transport.baked.radiance.quality import QUALITIES, Quality
 from andon.transport.baked.radiance.trace import traced_illuminance
 
@@ -70,17 +70,12 @@ def traced_points(inputs: Mapping[str, Path], settings: Mapping[str, Any], /) ->
         quality=QUALITIES[settings["quality"]],
         bounces=int(settings["bounces"]),
     )
-    stream = io.BytesIO()
-    np.lib.format.write_array(stream, lux, allow_pickle=False)
-    return stream.getvalue()
+    return npy_bytes(lux)
 
 
 def points_bundle(points: SeenPoints, /) -> Bundle:
     """The folder ``points`` of a task."""
-    stream = io.BytesIO()
-    both = np.concatenate([points.position, points.normal], axis=1)
-    np.lib.format.write_array(stream, both, allow_pickle=False)
-    return {POINTS: stream.getvalue()}
+    return {POINTS: npy_bytes(np.concatenate([points.position, points.normal], axis=1))}
 
 
 def programs() -> str:

@@ -100,7 +100,7 @@ def planned(scene: Scene, /, *, trust: bool = False) -> Planned:
     include = read_included(included, trust=trust)
     moments = moments_of(scene)
     stated = stated_views(scene, baked)
-    prepared = prepare(scene, drawn=False, maps=False)
+    prepared = prepare(scene, drawn=False)
     world = BakedWorld(scene, prepared)
     geometry = world.visible(0.0)
     shapes = {name: frame.view.shape for name, frame in prepared.frames.items()}

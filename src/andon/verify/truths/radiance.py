@@ -23,6 +23,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.bake.tasks import write_bundle
 from andon.errors import InputError, MachineError
 from andon.files.radiance_programs import run_radiance
 from andon.lamps import Lamp
@@ -113,8 +114,7 @@ class RadianceScene:
         bundle = radiance_bundle(
             [self._geometry], self._lamps, tiles=self._tiles, time_limit_seconds=self._limit
         )
-        for name, contents in bundle.items():
-            (folder / name).write_bytes(contents)
+        write_bundle(folder, bundle)
 
     def irradiance(
         self,

@@ -89,7 +89,7 @@ class Quality:
 QUALITIES: Mapping[str, Quality] = MappingProxyType(
     {
         "draft": Quality("draft", 0.01, 24, 36, 256, 0.2, 0.065, 0.56, 13.0),
-        "normal": Quality("normal", 0.06, 48, 64, 1024, 0.2, 0.046, 0.32, 85.0),
+        "normal": Quality("normal", 0.04, 40, 36, 1024, 0.2, 0.046, 0.32, 85.0),
         "fine": Quality("fine", 0.15, 24, 256, 4096, 0.2, 0.02, 0.32, 620.0),
     }
 )

@@ -30,7 +30,7 @@ from andon.transport.baked.model import Part
 from andon.transport.baked.radiance.quality import Quality
 from andon.transport.baked.radiance.smoothing import chosen_points, lonely_points, smoothed
 
-__all__ = ["traced_illuminance", "traced_luminance"]
+__all__ = ["traced_illuminance"]
 
 Float = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ OCTREE, BOUNCES, DETAIL = "scene.oct", "bounce.oct", "detail.oct"
 # quotient is chance.
 MOST = 2.0
 # Of the points that are traced, as many may be added where neighbours are too few.
-MORE = 0.5
+MORE = 0.3
 # Radiance's own luminous efficacy, lm/W, applied channel by channel.
 LUMENS_PER_WATT = 179.0
 # What is the same in every quality. Every lamp is tested (-dt, -dc), at its centre (-dj); there are
@@ -127,27 +127,6 @@ def _quotient(both: Float) -> Float:
     """(n, 3) of the first three columns and the last; 1 where there is no light."""
     many, few = both[:, :3], both[:, 3:]
     return np.clip(np.divide(many, few, out=np.ones_like(few), where=few > 0), 0, MOST)
-
-
-def traced_luminance(
-    folder: Path,
-    origins: NDArray[Any],
-    directions: NDArray[Any],
-    /,
-    *,
-    quality: Quality,
-    bounces: int,
-    time_limit_seconds: float = 3600.0,
-) -> NDArray[np.float32]:
-    """(n, 3) cd/m² that arrive at `origins` (n, 3) metres from `directions` (n, 3), lamps included.
-
-    Parameters and errors as in `traced_illuminance`.
-    """
-    places, looking = _triples(origins, "origins"), _directions(directions, "directions")
-    _check(places, looking, "directions", bounces)
-    rays = np.concatenate([places, looking], axis=1)
-    words = [*FIXED, *quality.options(bounces, alone=True)]
-    return _traced(folder, words, rays, time_limit_seconds, OCTREE).astype(np.float32)
 
 
 def _triples(values: NDArray[Any], field: str) -> Float:

@@ -125,7 +125,7 @@ class _Maker:
         bodies = digest(self.world.bodies(seconds))
         found: dict[str, tuple[str, int]] = {}
         for name, lamps in self.world.lamps(seconds).items():
-            source = digest("world", stands, bodies, name, lamps)
+            source = digest("world", stands, bodies, name, lamps, self.plan.quality.tiles)
             bundle = self.bundles.add(source, partial(self._world, name, seconds))
             found[name] = bundle, _direct_bounces(lamps)
         return found
@@ -138,7 +138,8 @@ class _Maker:
     def _world(self, name: str, seconds: float) -> Bundle:
         lamps = self.world.lamps(seconds)[name]
         parts, bodies = self.world.parts(seconds), self.world.bodies(seconds)
-        return radiance_bundle(parts, lamps, bodies, include=self.include)
+        tiles = self.plan.quality.tiles
+        return radiance_bundle(parts, lamps, bodies, include=self.include, detail_tiles=tiles)
 
     def _points(self, view: View, seconds: float) -> Bundle:
         return points_bundle(self.world.seen(view, seconds))

@@ -41,7 +41,7 @@ OCTREE, BOUNCES, DETAIL = "scene.oct", "bounce.oct", "detail.oct"
 # quotient is chance.
 MOST = 2.0
 # Of the points that are traced, as many may be added where neighbours are too few.
-MORE = 0.5
+MORE = 0.3
 # Radiance's own luminous efficacy, lm/W, applied channel by channel.
 LUMENS_PER_WATT = 179.0
 # What is the same in every quality. Every lamp is tested (-dt, -dc), at its centre (-dj); there are

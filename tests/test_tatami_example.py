@@ -118,7 +118,8 @@ def test_figure_4(tmp_path, gpu):
     plain = andon.render(plain, engine="gpu")
     for renderer, frame in zip(renderers, (alone, lamp), strict=True):
         assert not [note for note in renderer.prepared.surface.notes if "changed since" in note]
-        assert frame.report.uncovered_share < 0.03
+        # Of maps as large as the example states it is 0.002.
+        assert frame.report.uncovered_share < 0.05
     baked, seen = (andon.photometric(frame.illuminance.lux) for frame in (alone, plain))
     real = alone.baked.covered & (alone.surface.body_id < 0) & ~alone.surface.is_object
     lit = real & (seen > 10)

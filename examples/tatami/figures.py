@@ -140,7 +140,7 @@ def _of_all_lamps(seen: StoredMap) -> NDArray[Any]:
 def _shrunk(picture: Rgb) -> Rgb:
     """Half as wide and high."""
     pixels = picture.reshape(picture.shape[0] // 2, 2, picture.shape[1] // 2, 2, 3)
-    return np.round(pixels.mean(axis=(1, 3))).astype(np.uint8)
+    return np.asarray(np.round(np.mean(pixels, axis=(1, 3))), np.uint8)
 
 
 def _enlarged(values: NDArray[Any]) -> NDArray[Any]:

@@ -11,7 +11,8 @@ from andon.gpu.device import open_gpu
 from andon.surface.objects import joined
 from andon.surface.stage import SurfaceStage
 from andon.transport.baked import BakedLight, BakedMoment, illuminance_at, texels
-from andon.transport.baked.atlas import Place, atlas_of
+from andon.transport.baked.atlas import Atlas, Place, atlas_of
+from andon.transport.baked.records import check_memory
 from andon.transport.baked.rims import with_rims
 from andon.transport.baked.stage import BakedBuffers, BakedPicture
 from andon.verify.setting import prepared_of
@@ -209,6 +210,13 @@ def test_more_than_shaders_hold_is_refused(maps, lamps):
     )
     with pytest.raises(MachineError, match="more than shaders hold"):
         BakedBuffers(open_gpu(), still(*[seen] * maps))
+
+
+def test_maps_that_no_adapter_holds_are_refused():
+    """Before any memory is asked for; two moments of 8192² texels and no lamp fit."""
+    check_memory(Atlas(8192, 8192, 1, ()), lamps=0, moments=2)
+    with pytest.raises(MachineError, match=r"need 5\.0 GiB .* more than 4"):
+        check_memory(Atlas(8192, 8192, 1, ()), lamps=1, moments=2)
 
 
 def test_constants_are_those_of_the_reference():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,7 @@ from andon.files.pictures import npy_bytes
 from andon.transport.baked.radiance.quality import QUALITIES, Quality
 from andon.transport.baked.radiance.trace import traced_illuminance
 
-__all__ = ["VERSION", "WORK", "gathered", "points_bundle", "programs", "traced_points"]
+__all__ = ["VERSION", "WORK", "gathered", "points_bundle", "traced_points"]
 
 Float = NDArray[np.float64]
 
@@ -76,11 +75,3 @@ def traced_points(inputs: Mapping[str, Path], settings: Mapping[str, Any], /) ->
 def points_bundle(points: SeenPoints, /) -> Bundle:
     """The folder ``points`` of a task."""
     return {POINTS: npy_bytes(np.concatenate([points.position, points.normal], axis=1))}
-
-
-def programs() -> str:
-    """The version of the wheel that Radiance comes with: another one may compute otherwise."""
-    try:
-        return version("pyradiance")
-    except PackageNotFoundError:
-        return "none"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from importlib.metadata import PackageNotFoundError, version
 
 from andon.bake.maps.bundles import Bundles
 from andon.bake.maps.plan import Planned
@@ -19,6 +18,7 @@ from andon.bake.maps.work import (
 )
 from andon.bake.tasks.model import Bundle, Task
 from andon.engines.digest import digest
+from andon.files.radiance_programs import radiance_version
 from andon.lamps import Lamp
 from andon.quantities import Photometry
 from andon.spaces import View
@@ -47,8 +47,21 @@ class Jobs:
 
     @property
     def tasks(self) -> list[Task]:
-        """Geometry first: it is quick, and shows early that the folder can be written."""
-        return [*self.geometry.values(), *self.light.values()]
+        """Moment after moment, and in each lamp after lamp: what a lamp lights is the largest of
+        what tasks read, and is kept while they follow each other. Geometry is the first: it is
+        quick, and shows early that the folder can be written.
+        """
+        geometry = [
+            ((moment, -1, camera), task) for (camera, moment), task in self.geometry.items()
+        ]
+        numbers = {
+            lamp: number for number, lamp in enumerate({lamp: 0 for lamp, _, _ in self.light})
+        }
+        light = [
+            ((moment, numbers[lamp], camera), task)
+            for (lamp, camera, moment), task in self.light.items()
+        ]
+        return [task for _, task in sorted([*geometry, *light], key=lambda each: each[0])]
 
 
 def jobs_of(
@@ -92,7 +105,7 @@ class _Maker:
     def __init__(self, planned: Planned, photometry: Photometry, bundles: Bundles) -> None:
         self.plan, self.world, self.include = planned.plan, planned.world, planned.include
         self.bundles, self.photometry = bundles, photometry
-        self.programs = _radiance_version()
+        self.programs = radiance_version()
         self.still = digest(list(self.world.still))
 
     def settings(self, lamp: str, view: View, direct_bounces: int) -> dict[str, object]:
@@ -142,11 +155,3 @@ class _Maker:
 def _direct_bounces(lamps: tuple[Lamp, ...]) -> int:
     """Rays of the hemisphere find a sky of glow; every other lamp is aimed at."""
     return int(any(is_distant_glow(lamp) for lamp in lamps))
-
-
-def _radiance_version() -> str:
-    """Of the wheel whose programs are used; results of another one are computed again."""
-    try:
-        return version("pyradiance")
-    except PackageNotFoundError:
-        return "unknown"

@@ -27,6 +27,7 @@ from andon.transport.baked.records import (
     MAX_LAMPS,
     MAX_MAPS,
     STRUCTS,
+    check_memory,
     moments_text,
     settings_text,
 )
@@ -70,6 +71,7 @@ class BakedBuffers:
             [view.shape for view in views], gpu.device.limits["max-texture-dimension-2d"]
         )
         most = min(2, len(light.moments))
+        check_memory(atlas, lamps=len(self.lamps), moments=most)
         settings = {SETTINGS: settings_text(views, len(self.lamps), light.mode)}
         self.variants = [
             {**settings, MOMENTS: moments_text(len(views), count)} for count in range(1, most + 1)

@@ -22,7 +22,7 @@ from andon.cli.bar import Bar
 from andon.display.false_colour import GAP_PX, contact_sheet, false_colour, top_of
 from andon.display.reference import tone_curve
 from andon.engines.prepared import Prepared, prepare
-from andon.files.illuminance_maps import MANIFEST, StoredMap, read_manifest, read_moment
+from andon.files.illuminance_maps import MANIFEST, IlluminanceMap, read_manifest, read_moment
 from andon.files.pictures import write_png
 from andon.responses import srgb_encode
 from andon.surface import reference as surface
@@ -110,7 +110,7 @@ def reflections(engine: str) -> Rgb:
     return contact_sheet(tiles, columns=2, gap_px=GAP_PX)
 
 
-def simulated(prepared: Prepared, seen: StoredMap) -> Rgb:
+def simulated(prepared: Prepared, seen: IlluminanceMap) -> Rgb:
     """What a map's camera sees in its light alone: ρ·E/π, and paper that is luminous itself."""
     there = surface.with_bodies(surface.see(prepared.surface, seen.view), prepared.bodies(0.0))
     reflected = there.reflectance * _of_all_lamps(seen) / np.pi
@@ -132,7 +132,7 @@ def bake(scene: andon.Scene, quality: str | None) -> None:
         bake_maps(scene, progress=bar.show)
 
 
-def _of_all_lamps(seen: StoredMap) -> NDArray[Any]:
+def _of_all_lamps(seen: IlluminanceMap) -> NDArray[Any]:
     """(h, w, 3) lx."""
     return np.sum(list(seen.lux.values()), axis=0)
 
@@ -140,7 +140,7 @@ def _of_all_lamps(seen: StoredMap) -> NDArray[Any]:
 def _shrunk(picture: Rgb) -> Rgb:
     """Half as wide and high."""
     pixels = picture.reshape(picture.shape[0] // 2, 2, picture.shape[1] // 2, 2, 3)
-    return np.round(pixels.mean(axis=(1, 3))).astype(np.uint8)
+    return np.asarray(np.round(np.mean(pixels, axis=(1, 3))), np.uint8)
 
 
 def _enlarged(values: NDArray[Any]) -> NDArray[Any]:

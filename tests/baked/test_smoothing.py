@@ -5,7 +5,7 @@ import pytest
 
 from andon.errors import MachineError
 from andon.transport.baked.radiance import smoothing
-from andon.transport.baked.radiance.smoothing import chosen_points, smoothed
+from andon.transport.baked.radiance.smoothing import chosen_points, lonely_points, smoothed
 
 UP = np.array([0.0, 1.0, 0.0])
 
@@ -126,3 +126,17 @@ def test_a_panel_behind_its_frame_keeps_its_light():
     found = smoothed(place, normal, chosen, lux[chosen], neighbours=48)[:, 0]
     assert np.median(found[4000:]) < 1.7  # 5.5 by distance alone
     assert np.median(found[:4000]) > 9.3
+
+
+def test_bars_before_a_sheet_are_lonely():
+    """Thin bars 1 cm before a sheet get more points; at most as many as asked, none twice."""
+    sheet, up = plane(20_000)
+    bars, _ = plane(400, seed=5)
+    place = np.concatenate([sheet, bars * [1, 1, 0.01] + 0.01 * UP])
+    normal = np.concatenate([up, up[:400]])
+    chosen = chosen_points(place, normal, 500)
+    more = lonely_points(place, normal, chosen, neighbours=24, most=60)
+    assert len(np.unique(more)) == len(more) == 60
+    assert not np.isin(more, chosen).any()
+    assert (more >= 20_000).mean() > 0.9
+    assert len(lonely_points(sheet, up, chosen_points(sheet, up, 500), neighbours=24, most=9)) == 0

@@ -9,10 +9,11 @@ from test_radiance_lamps import LAMPS
 
 from andon.errors import MachineError
 from andon.files import radiance_programs
-from andon.lamps import GoniometricLamp, PointLamp, SphereLamp, body_of
+from andon.lamps import GoniometricLamp, PointLamp, PolygonLamp, SphereLamp, body_of
 from andon.quantities import Geometry, Material
 from andon.surface.objects import joined
 from andon.transport.baked.radiance import OCTREE, radiance_bundle
+from andon.transport.baked.radiance.scene import DETAIL_OCTREE
 from requirements import required
 from worlds import block
 
@@ -46,7 +47,7 @@ def test_the_same_scene_gives_the_same_bytes(tmp_path, monkeypatch):
         monkeypatch.setattr("tempfile.tempdir", None)
         monkeypatch.chdir(tmp_path / name)
         assert whole() == first
-    assert {"surfaces.rad", OCTREE, "more.rad", "part1.0.rtm", "part1.0.hdr"} <= set(first)
+    assert {"surfaces.rad", OCTREE, "include0.rad", "part1.0.rtm", "part1.0.hdr"} <= set(first)
 
 
 def test_nothing_in_a_bundle_tells_where_or_when_it_was_made():
@@ -105,3 +106,15 @@ def test_names_with_spaces_and_umlauts_do_no_harm():
     bundle = radiance_bundle([part], [lamp])
     assert b"rm" not in bundle["surfaces.rad"] + bundle["lamps.rad"]
     assert isinstance(LAMPS["type C"], GoniometricLamp)
+
+
+def test_octrees_of_many_tiles():
+    """Only of lamps that have more of them; the others are the same."""
+    corners = np.array([[-1.0, 2, -1], [1, 2, -1], [1, 2, 1], [-1, 2, 1]])
+    panel = PolygonLamp("panel", np.full(3, 100.0), corners)
+    few, many = (radiance_bundle([open_room()], [panel], detail_tiles=n) for n in (0, 256))
+    assert DETAIL_OCTREE not in few
+    assert {name: many[name] for name in few} == few
+    assert many["detail.rad"].count(b" polygon ") == 256
+    point = PointLamp("p", np.array([0, 1.0, 0]), np.full(3, 90.0))
+    assert DETAIL_OCTREE not in radiance_bundle([open_room()], [point], detail_tiles=256)

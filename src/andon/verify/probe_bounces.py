@@ -167,7 +167,7 @@ def true_irradiance(scene: Scene, places: Float, normals: Float, bounces: int, /
 
 def _traced(folder: Path, rays: Float, bounces: int) -> Float:
     """Lux of rays (n, 6), every one by itself: nothing kept for reuse, random numbers that do not
-    begin alike (-u+). With those that do, paths that end by chance are 3 % too bright here."""
+    begin alike (-u+). With those that do, what is reflected is 2 % too bright here."""
     words = ["-I", "-h", "-w", "-fdd", "-n", "1", "-u+", "-dt", "0", "-dc", "1", "-dj", "0"]
     words += ["-ab", str(bounces), "-ad", str(RAYS), "-as", "0", "-aa", "0"]
     words += ["-lw", f"{1 / RAYS:g}", "-lr", f"{-(bounces + 8)}", OCTREE]

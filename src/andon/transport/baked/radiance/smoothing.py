@@ -78,7 +78,10 @@ def lonely_points(
     lonely: list[NDArray[np.intp]] = []
     for start, near in _neighbours(position, normal, chosen, neighbours):
         weight = near.weight
-        count = weight.sum(axis=1) ** 2 / (weight**2).sum(axis=1)
+        total = weight.sum(axis=1)
+        # Kish's number knows no scale: of neighbours that are all off the plane it is large. On a
+        # plane both are 0.56 of the neighbours.
+        count = np.minimum(total**2 / (weight**2).sum(axis=1), 5 / 3 * total)
         lonely.append(start + np.flatnonzero(count < ENOUGH))
     numbers = np.setdiff1d(np.concatenate(lonely), chosen)
     return numbers[chosen_points(position[numbers], normal[numbers], min(most, len(numbers)))]

@@ -14,13 +14,13 @@ from andon.transport.baked.radiance.lamps import lamps_text
 from andon.transport.baked.radiance.luminaires import POINT_CAL, POINT_FILE
 from andon.transport.baked.radiance.materials import MIX_CAL, MIX_FILE
 from andon.transport.baked.radiance.surfaces import surfaces_of, without_near
+from andon.transport.baked.radiance.text import BOUNCE_OCTREE, OCTREE
 from andon.transport.baked.radiance.textures import TEXTURE_CAL, TEXTURE_FILE
 
 __all__ = ["BOUNCE_OCTREE", "OCTREE", "radiance_bundle"]
 
-SCENE, OCTREE = "scene.rad", "scene.oct"
-# The same scene with lamps of few tiles, for the light that surfaces reflect.
-BOUNCE_SCENE, BOUNCE_OCTREE = "bounce.rad", "bounce.oct"
+# Of both octrees.
+SCENE, BOUNCE_SCENE = "scene.rad", "bounce.rad"
 # Tiles of an area lamp: unshadowed light is then off by 0.02 % (rectangle) to 0.4 % (ball) median,
 # 0.06 to 1.1 % at the 95th percentile a metre or two away, and a penumbra has so many steps.
 TILES = 64

@@ -1,4 +1,4 @@
-"""Illuminance and luminance by `rtrace`, the same to the last bit in every run.
+"""Illuminance by `rtrace`, the same to the last bit in every run.
 
 ::
 
@@ -25,15 +25,12 @@ from andon.files.radiance_programs import run_radiance
 from andon.transport.baked.model import Part
 from andon.transport.baked.radiance.quality import FEW_POINTS, Quality
 from andon.transport.baked.radiance.smoothing import chosen_points, smoothed
+from andon.transport.baked.radiance.text import BOUNCE_OCTREE, LUMENS_PER_WATT, OCTREE
 
 __all__ = ["traced_illuminance"]
 
 Float = NDArray[np.float64]
 
-# What `radiance_bundle` makes: lamps in all detail, and of few tiles for what is reflected.
-OCTREE, BOUNCES = "scene.oct", "bounce.oct"
-# Radiance's own luminous efficacy, lm/W, applied channel by channel.
-LUMENS_PER_WATT = 179.0
 # What is the same in every quality. Every lamp is tested (-dt, -dc), at its centre (-dj); there are
 # no mirrors, so no virtual lamps (-dr). One process, and random numbers that begin alike: with -u+,
 # the default, the clock chooses them.
@@ -84,9 +81,9 @@ def traced_illuminance(
     has_exact = part == "all" and not direct_bounces
     result = ask(OCTREE, rays, 0) if has_exact else np.zeros_like(places)
     if bounces or (direct_bounces and part == "all"):
-        found = ask(BOUNCES, rays[chosen], bounces + direct_bounces)
+        found = ask(BOUNCE_OCTREE, rays[chosen], bounces + direct_bounces)
         if part == "bounce" or not direct_bounces:
-            found -= ask(BOUNCES, rays[chosen], direct_bounces)
+            found -= ask(BOUNCE_OCTREE, rays[chosen], direct_bounces)
         found = np.maximum(found, 0)  # a difference's rounding
         if not alone:
             found = smoothed(places, facing, chosen, found, neighbours=quality.neighbours)

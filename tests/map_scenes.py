@@ -38,15 +38,15 @@ class Here:
 
     @contextmanager
     def started(self, bundles, folder):
-        with inputs_in(folder, bundles) as folders:
-            yield _Pool(self, folders)
+        with inputs_in(folder, bundles) as inputs:
+            yield _Pool(self, inputs)
 
 
 class _Pool:
     count = 1
 
-    def __init__(self, owner, folders):
-        self.owner, self.folders, self.waiting = owner, folders, deque()
+    def __init__(self, owner, inputs):
+        self.owner, self.inputs, self.waiting = owner, inputs, deque()
 
     @property
     def free(self):
@@ -58,8 +58,10 @@ class _Pool:
     def next(self):
         task = self.waiting.popleft()
         self.owner.done.append(task.name)
-        inputs = {name: self.folders[digest] for name, digest in task.inputs.items()}
-        return performed(task, inputs, "here")
+        return performed(task, self.inputs.of(task), "here")
+
+    def drop(self, digest):
+        self.inputs.drop(digest)
 
 
 def write_room(folder, *, colour=(0.8, 0.4, 0.2)):

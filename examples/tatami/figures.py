@@ -20,6 +20,7 @@ import andon
 from andon.bake.maps import bake_maps
 from andon.cli.bar import Bar
 from andon.display.false_colour import GAP_PX, contact_sheet, false_colour, top_of
+from andon.display.reference import tone_curve
 from andon.engines.prepared import Prepared, prepare
 from andon.files.illuminance_maps import MANIFEST, StoredMap, read_manifest, read_moment
 from andon.files.pictures import write_png
@@ -31,8 +32,8 @@ Rgb = NDArray[np.uint8]
 
 # The andon alone, and with a lamp: one bake is for both.
 FIGURE_4 = ("figure4.toml", "figure4-lamp.toml")
-# Luminance that is white in the simulated pictures: paper that the andon lights from 1 m away.
-SIMULATED_WHITE_CD_M2 = 30.0
+# Luminance that is white in the simulated pictures: white paper in 150 lx.
+SIMULATED_WHITE_CD_M2 = 50.0
 # Pixels of figure 4 for each of a map, along a row: its texels are to be seen.
 TEXEL_PX = 2
 
@@ -84,7 +85,7 @@ def figure4(engine: str) -> Rgb:
         for seen, light in zip(maps, lux, strict=True)
     ]
     relit = [drawn(name, engine).image.rgb for name in FIGURE_4]
-    white = f"white is {SIMULATED_WHITE_CD_M2:g} cd/m²"
+    white = f"white is {SIMULATED_WHITE_CD_M2:g} cd per square metre"
     captions = (
         f"(a) simulated, first camera; {white}",
         f"(b) simulated, second camera; {white}",
@@ -97,6 +98,18 @@ def figure4(engine: str) -> Rgb:
     return contact_sheet(tiles, columns=2, gap_px=GAP_PX)
 
 
+def reflections(engine: str) -> Rgb:
+    """The andon's direct light alone, and all that the room makes of it."""
+    scene = andon.load_scene(HERE / FIGURE_4[0])
+    direct = tuple(lamp.model_copy(update={"transport": "direct"}) for lamp in scene.lamp)
+    alone = scene.model_copy(update={"lamp": direct, "baked": None})
+    tiles = [
+        ("direct light alone", _shrunk(andon.render(alone, engine=engine).image.rgb)),  # type: ignore[arg-type]
+        ("baked: what the room reflects as well", _shrunk(drawn(FIGURE_4[0], engine).image.rgb)),
+    ]
+    return contact_sheet(tiles, columns=2, gap_px=GAP_PX)
+
+
 def simulated(prepared: Prepared, seen: StoredMap) -> Rgb:
     """What a map's camera sees in its light alone: ρ·E/π, and paper that is luminous itself."""
     there = surface.with_bodies(surface.see(prepared.surface, seen.view), prepared.bodies(0.0))
@@ -104,7 +117,7 @@ def simulated(prepared: Prepared, seen: StoredMap) -> Rgb:
     # Maps hold the light of what is behind a luminous body.
     own = np.zeros(there.valid.shape, bool) if there.body_id is None else there.body_id >= 0
     luminance = np.where(own[..., None], there.emitted_cd_m2, reflected)
-    return encoded(luminance / SIMULATED_WHITE_CD_M2)
+    return encoded(tone_curve(luminance / SIMULATED_WHITE_CD_M2, "hue"))
 
 
 def bake(scene: andon.Scene, quality: str | None) -> None:
@@ -122,6 +135,12 @@ def bake(scene: andon.Scene, quality: str | None) -> None:
 def _of_all_lamps(seen: StoredMap) -> NDArray[Any]:
     """(h, w, 3) lx."""
     return np.sum(list(seen.lux.values()), axis=0)
+
+
+def _shrunk(picture: Rgb) -> Rgb:
+    """Half as wide and high."""
+    pixels = picture.reshape(picture.shape[0] // 2, 2, picture.shape[1] // 2, 2, 3)
+    return np.round(pixels.mean(axis=(1, 3))).astype(np.uint8)
 
 
 def _enlarged(values: NDArray[Any]) -> NDArray[Any]:
@@ -148,7 +167,7 @@ def encoded(linear: NDArray[Any]) -> Rgb:
 
 
 def main() -> None:
-    """Writes figure3.png, figure4.png, figure5.png and andon.png."""
+    """Writes figure3.png, figure4.png, reflections.png, figure5.png and andon.png."""
     parser = argparse.ArgumentParser(description="Remakes the figures.")
     parser.add_argument("-o", "--out", type=Path, required=True, help="folder to write to")
     parser.add_argument("--engine", default="auto", help="auto, gpu or reference")
@@ -160,6 +179,7 @@ def main() -> None:
     makers: dict[str, Callable[[], Rgb]] = {
         "figure3.png": lambda: figure3(drawn("figure3.toml", engine)),
         "figure4.png": lambda: figure4(engine),
+        "reflections.png": lambda: reflections(engine),
         "figure5.png": lambda: figure5(drawn("figure5.toml", engine)),
         "andon.png": lambda: drawn("andon.toml", engine).image.rgb,
     }

@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import pytest
 from works_for_tasks import BUNDLES, DIGEST, Inline, contents, logged, task, tasks
 
-from andon.bake.tasks import DaskWorkers, Store, run_tasks, tasks_status
+from andon.bake.tasks import DaskWorkers, Store, Task, bundle_digest, run_tasks, tasks_status
 from andon.errors import MachineError
 from requirements import missing, required
 
@@ -151,16 +151,35 @@ def test_a_scheduler_that_goes_loses_nothing_that_is_done(tmp_path, log):
 def test_a_worker_of_another_version_is_refused(tmp_path, monkeypatch):
     from andon.bake.tasks import cluster_worker
 
-    inputs = cluster_worker.Inputs("inputs", BUNDLES)
+    inputs = cluster_worker.Folders("inputs")
     with cluster(tmp_path / "dask", 1) as (address, _, _), monkeypatch.context() as patched:
-        patched.setattr(cluster_worker.metadata, "version", lambda name: "9")
+        patched.setattr(cluster_worker, "radiance_version", lambda: "9")
         with pytest.raises(MachineError, match=r"has not Andon .*, pyradiance 9: Andon .*install"):
             run_tasks(tasks(1), BUNDLES, Store(tmp_path / "maps"), workers=DaskWorkers(address))
         # One that comes when all others have been asked says so itself.
         worker = SimpleNamespace(local_directory=tmp_path, address="tcp://late", plugins={})
         inputs.setup(worker)
         assert re.fullmatch(r"tcp://late has Andon \S+, pyradiance 9, not Andon .*", inputs.fault)
-    assert (tmp_path / "inputs" / DIGEST / "deep/er/more.txt").read_bytes() == b" of lamps"
+
+
+def test_a_worker_holds_what_tasks_that_are_out_read(tmp_path):
+    from andon.bake.tasks import cluster_worker
+
+    inputs, there = cluster_worker.Folders("inputs"), tmp_path / "inputs" / "inputs"
+    worker = SimpleNamespace(local_directory=tmp_path, address="tcp://here", plugins={})
+    inputs.setup(worker)
+    other = {"other.txt": b"moonlight"}
+    name = bundle_digest(other)
+    second = Task("other", "works_for_tasks:work", {"scene": name}, {"n": 1})
+    with inputs.of(tasks(1)[0], BUNDLES, [DIGEST]) as folders:
+        assert (folders["scene"] / "deep/er/more.txt").read_bytes() == b" of lamps"
+        with inputs.of(second, {name: other}, [name]) as more:
+            assert (more["scene"] / "other.txt").read_bytes() == b"moonlight"
+            assert (there / DIGEST).exists(), "a task reads it"
+    with inputs.of(second, {name: other}, [name, DIGEST]):
+        assert (there / DIGEST).exists(), "a task that comes reads it"
+    with inputs.of(second, {name: other}, [name]):
+        assert [path.name for path in there.iterdir()] == [name]
     inputs.teardown(worker)
     assert not (tmp_path / "inputs").exists()
 
@@ -169,16 +188,16 @@ def test_a_full_worker_says_so(tmp_path, monkeypatch):
     from andon.bake.tasks import cluster_worker
 
     (tmp_path / "inputs").write_bytes(b"in the way")
-    inputs = cluster_worker.Inputs("inputs", BUNDLES)
+    inputs = cluster_worker.Folders("inputs")
     worker = SimpleNamespace(
         local_directory=tmp_path, address="tcp://full", plugins={"inputs": inputs}
     )
     inputs.setup(worker)
     monkeypatch.setattr(cluster_worker, "get_worker", lambda: worker)
-    outcome = cluster_worker.performed_there(tasks(1)[0], "inputs")
+    outcome = cluster_worker.performed_there(tasks(1)[0], "inputs", BUNDLES, [DIGEST])
     assert outcome.worker == "tcp://full"
     assert outcome.data.kind == "machine"
-    assert "inputs: cannot be written" in outcome.data.words
+    assert f"inputs/{DIGEST}: cannot be written: " in outcome.data.words
 
 
 def test_nobody_at_the_address_is_said_soon(tmp_path):

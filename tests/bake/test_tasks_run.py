@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
-from works_for_tasks import BUNDLES, DIGEST, Inline, contents, logged, task, tasks
+from works_for_tasks import BUNDLE, BUNDLES, DIGEST, Inline, contents, logged, task, tasks
 
 from andon.bake.tasks import Store, Task, bundle_digest, run_tasks
 from andon.errors import InputError, MachineError
@@ -152,6 +152,48 @@ def test_an_interrupt_keeps_what_is_done(tmp_path, log):
     ]  # fmt: skip
     run_tasks(tasks(4), BUNDLES, store, workers=Inline())
     assert log() == [0, 1, 2, 3]
+
+
+class Later(dict):
+    """Bundles that are made when they are asked for; `made` are their numbers, as often."""
+
+    def __init__(self, count):
+        super().__init__(BUNDLES)
+        self.made = []
+        for n in range(count):
+            files = {**BUNDLE, "number": b"%d" % n}
+            self[bundle_digest(files)] = files
+
+    def __getitem__(self, digest):
+        files = super().__getitem__(digest)
+        self.made.append(int(files.get("number", b"-1")))
+        return files
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_bundles_are_on_the_disk_while_tasks_read_them(tmp_path, log, count):
+    """Three tasks for each of four bundles, one of which fails twice: no more than needed."""
+    bundles, store, held = Later(4), Store(tmp_path / "maps"), []
+    names = list(bundles)[1:]
+    planned = [
+        Task(f"{name[:6]} {n}", "works_for_tasks:work", {"scene": name, "again": name}, {"n": n})
+        for name in names
+        for n in range(3)
+    ]
+    marks = {"marks": str(tmp_path / "marks")}
+    planned[1] = Task("again", "works_for_tasks:fails_twice", {"scene": names[0]}, marks)
+
+    def look(progress):
+        folder = store.folder / "inputs"
+        held.append({path.name for path in folder.iterdir()} if folder.exists() else set())
+
+    run_tasks(planned, bundles, store, workers=Inline(count), progress=look)
+    assert bundles.made == [0, 1, 2, 3], "each once, when a task needs it"
+    assert held[0] == set(), "none before the first task"
+    # That of the task that comes again stays to the end; beside it those of tasks that are out.
+    assert max(map(len, held)) <= 1 + count
+    assert not held[-1] & set(names[1:3])
+    assert not (store.folder / "inputs").exists()
 
 
 def full(*_):

@@ -144,7 +144,7 @@ class Inline:
     def started(self, bundles, folder):
         self.starts += 1
         self.waiting = deque()
-        with inputs_in(folder, bundles) as self.folders:
+        with inputs_in(folder, bundles) as self.inputs:
             yield self
 
     def start(self, each):
@@ -152,8 +152,10 @@ class Inline:
 
     def next(self):
         each = self.waiting.popleft()
-        folders = {name: self.folders[digest] for name, digest in each.inputs.items()}
-        return performed(each, folders, "here")
+        return performed(each, self.inputs.of(each), "here")
+
+    def drop(self, digest):
+        self.inputs.drop(digest)
 
 
 def killed_everywhere(folder):

@@ -11,8 +11,10 @@ from andon.errors import MachineError
 from andon.files import radiance_programs
 from andon.lamps import GoniometricLamp, PointLamp, SphereLamp, body_of
 from andon.quantities import Geometry, Material
+from andon.surface.objects import joined
 from andon.transport.baked.radiance import OCTREE, radiance_bundle
 from requirements import required
+from worlds import block
 
 required("pyradiance")
 
@@ -44,7 +46,7 @@ def test_the_same_scene_gives_the_same_bytes(tmp_path, monkeypatch):
         monkeypatch.setattr("tempfile.tempdir", None)
         monkeypatch.chdir(tmp_path / name)
         assert whole() == first
-    assert {"scene.rad", OCTREE, "include0.rad", "part1.0.rtm", "part1.0.hdr"} <= set(first)
+    assert {"surfaces.rad", OCTREE, "more.rad", "part1.0.rtm", "part1.0.hdr"} <= set(first)
 
 
 def test_nothing_in_a_bundle_tells_where_or_when_it_was_made():
@@ -52,6 +54,17 @@ def test_nothing_in_a_bundle_tells_where_or_when_it_was_made():
         assert re.fullmatch(r"[A-Za-z0-9.]+", name)
         for word in (b"/tmp", b"andon-radiance", b"CAPDATE", b"/home", b"site-packages"):
             assert word not in contents, (name, word)
+
+
+def test_surfaces_travel_once_and_octrees_are_small():
+    """Laths on a wall, where `oconv` cuts cells as long as it may: 4.8 MB with its own limit."""
+    laths = joined(
+        [block((0.004, 2, 0.004), (x, 1, z)) for x in np.arange(-1, 1, 0.02) for z in (-1, 1)]
+    )
+    bundle = radiance_bundle([laths], [PointLamp("p", AT, LIGHT)])
+    texts = [contents for name, contents in bundle.items() if name.endswith(".rad")]
+    assert sum(text.count(b"polygon") for text in texts) == len(laths.triangles)
+    assert len(bundle[OCTREE]) < 2 * len(bundle["surfaces.rad"])
 
 
 def test_included_things_stand_in_the_scene():
@@ -90,5 +103,5 @@ def test_names_with_spaces_and_umlauts_do_no_harm():
     lamp = PointLamp("Lampe für den Flur\nvoid light x", AT, LIGHT)
     part = Geometry(np.eye(3), np.array([[0, 1, 2]], np.int32), materials=(Material("ä b\n!rm"),))
     bundle = radiance_bundle([part], [lamp])
-    assert b"rm" not in bundle["scene.rad"]
+    assert b"rm" not in bundle["surfaces.rad"] + bundle["lamps.rad"]
     assert isinstance(LAMPS["type C"], GoniometricLamp)

@@ -128,6 +128,28 @@ def test_large_textures_are_averaged():
     assert len(bundle["part0.0.hdr"]) < 40_000
 
 
+def test_what_is_finer_than_a_bounce_shows_is_averaged():
+    """Of 512 pixels on half a metre 100 are left, on 10 m all; what is reflected is the same."""
+    texture = np.random.default_rng(3).uniform(0, 1, (512, 256, 3)).astype(np.float32)
+    uvs = np.array([[0, 0], [1, 0], [0, 1.0]])
+    lamp, size = PointLamp("p", np.array([0.1, 1.0, 0.1]), np.full(3, 90.0)), {}
+    points, down = np.array([[0.15, 0.2, 0.15]]), np.array([[0, -1.0, 0]])
+    for side, count in ((0.5, 102 * 102), (10.0, 514 * 258)):
+        corners = np.array([[0, 0, 0], [side, 0, 0], [0, 0, side]])
+        part = Geometry(corners, np.array([[0, 1, 2]], np.int32), uvs=uvs,
+                        materials=(Material("m", (1, 1, 1), texture),))  # fmt: skip
+        bundle = radiance_bundle([part], [lamp])
+        size[side] = len(bundle["part0.0.hdr"])
+        assert 4 * count < size[side] < 4 * count + 100
+    plain = replace(part, positions=part.positions * 0.05, materials=(Material("m", (0.5,) * 3),))
+    part = replace(part, positions=plain.positions)
+    options = ("-aa", "0", "-ad", "16384", "-as", "0")
+    found, want = (
+        lux_of(radiance_bundle([x], [lamp]), points, down, 1, *options) for x in (part, plain)
+    )
+    np.testing.assert_allclose(found, want, rtol=0.02)
+
+
 def test_every_triangle_gets_its_reflectance():
     """Each within 1/levels, all of a cell exactly on the mean, so also all together."""
     shape = ball(1.0, (0, 0, 0), 12)

@@ -47,8 +47,21 @@ class Jobs:
 
     @property
     def tasks(self) -> list[Task]:
-        """Geometry first: it is quick, and shows early that the folder can be written."""
-        return [*self.geometry.values(), *self.light.values()]
+        """Moment after moment, and in each lamp after lamp: what a lamp lights is the largest of
+        what tasks read, and is kept while they follow each other. Geometry is the first: it is
+        quick, and shows early that the folder can be written.
+        """
+        geometry = [
+            ((moment, -1, camera), task) for (camera, moment), task in self.geometry.items()
+        ]
+        numbers = {
+            lamp: number for number, lamp in enumerate({lamp: 0 for lamp, _, _ in self.light})
+        }
+        light = [
+            ((moment, numbers[lamp], camera), task)
+            for (lamp, camera, moment), task in self.light.items()
+        ]
+        return [task for _, task in sorted([*geometry, *light], key=lambda each: each[0])]
 
 
 def jobs_of(

@@ -3,10 +3,11 @@
 A scheduler runs code that its peers send it, and so do its workers: whoever reaches its port owns
 those machines. Let it listen on a network that you trust alone, or give it certificates (TLS).
 
-No state lives there. Bundles are sent once, and each worker, also one that comes later, writes them
-into a folder of its own once; artefacts come back and are kept by this side's `Store`. A worker
-that goes loses the task that it was doing, which the scheduler gives to another. A scheduler that
-goes ends the bake; one that begins again does what is missing.
+No state lives there. A bundle is sent once, with the first task that reads it, and each worker that
+gets such a task writes it into a folder of its own; nobody keeps it when no task that is out reads
+it. Artefacts come back and are kept by this side's `Store`. A worker that goes loses the task that
+it was doing, which the scheduler gives to another. A scheduler that goes ends the bake; one that
+begins again does what is missing.
 
 As many tasks are out at a time as workers have threads, and none waits in a worker's queue: there
 it would be blamed when the task before it takes the worker down. Workers of one thread
@@ -18,6 +19,7 @@ from __future__ import annotations
 import importlib
 import logging
 import queue
+import warnings
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager, suppress
 from math import inf
@@ -68,8 +70,7 @@ class DaskWorkers:
         with _quiet():
             client = self._connected()
             try:
-                pool = _DaskPool(client, self.address, folder, self.connect_seconds)
-                pool.send(bundles)
+                pool = _DaskPool(client, self.address, bundles, folder, self.connect_seconds)
                 try:
                     yield pool
                 finally:
@@ -127,13 +128,22 @@ class DaskWorkers:
 class _DaskPool:
     """See `Pool`."""
 
-    def __init__(self, client: Any, address: str, folder: Path, patience_seconds: float) -> None:
+    def __init__(
+        self,
+        client: Any,
+        address: str,
+        bundles: Mapping[str, Bundle],
+        folder: Path,
+        patience_seconds: float,
+    ) -> None:
         self._client, self._address, self._folder = client, address, folder
-        self._patience = patience_seconds
+        self._bundles, self._patience = bundles, patience_seconds
+        self._sent: dict[str, Any] = {}
         self._name = f"andon-inputs-{uuid4().hex}"
         self._running: dict[Any, Task] = {}
         self._ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._threads, self._looked, self._seen = 1, -inf, monotonic()
+        self._prepare()
 
     @property
     def count(self) -> int:
@@ -145,12 +155,12 @@ class _DaskPool:
     def free(self) -> int:
         return self.count - len(self._running)
 
-    def send(self, bundles: Mapping[str, Bundle]) -> None:
-        """Puts the bundles onto all workers, and onto those that come later."""
-        from andon.bake.tasks.cluster_worker import Inputs
+    def _prepare(self) -> None:
+        """All workers, and those that come later, know where to put what tasks read."""
+        from andon.bake.tasks.cluster_worker import Folders
 
         try:
-            self._client.register_plugin(Inputs(self._name, bundles), name=self._name)
+            self._client.register_plugin(Folders(self._name), name=self._name)
         except Exception as error:
             raise self._gone(_first_line(error)) from error
 
@@ -158,13 +168,32 @@ class _DaskPool:
         """See `Pool`."""
         from andon.bake.tasks.cluster_worker import performed_there
 
-        key = f"andon-{task.key}-{uuid4().hex[:12]}"
-        try:
-            future = self._client.submit(performed_there, task, self._name, key=key, pure=False)
-        except Exception as error:
-            raise self._gone(_first_line(error)) from error
+        read = {digest: self._held(digest) for digest in task.inputs.values()}
+        key, out = f"andon-{task.key}-{uuid4().hex[:12]}", tuple(self._sent)
+        future = self._submitted(performed_there, task, self._name, read, out, key=key)
         self._running[future] = task
         future.add_done_callback(self._ended.put)
+
+    def drop(self, digest: str, /) -> None:
+        """See `Pool`; workers remove its folder with their next task, or at the end."""
+        self._sent.pop(digest, None)
+
+    def _held(self, digest: str) -> Any:
+        """The bundle where Dask has it; it is sent if it is not there."""
+        from andon.bake.tasks.cluster_worker import held
+
+        if digest not in self._sent:
+            key = f"{self._name}-{digest}"
+            self._sent[digest] = self._submitted(held, dict(self._bundles[digest]), key=key)
+        return self._sent[digest]
+
+    def _submitted(self, function: Any, *values: Any, key: str) -> Any:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # Dask finds bundles large, and sends them
+                return self._client.submit(function, *values, key=key, pure=False)
+        except Exception as error:
+            raise self._gone(_first_line(error)) from error
 
     def next(self) -> Outcome:
         """See `Pool`."""
@@ -182,6 +211,7 @@ class _DaskPool:
 
     def forget(self) -> None:
         """Lets workers remove their folders."""
+        self._sent.clear()
         if self._client.status == "running":
             with suppress(Exception):
                 self._client.unregister_worker_plugin(self._name)

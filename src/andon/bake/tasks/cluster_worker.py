@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Collection, Generator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 from distributed import WorkerPlugin, get_worker
 
-from andon.bake.tasks.inputs import write_bundle
+from andon.bake.tasks.inputs import Inputs
 from andon.bake.tasks.model import Bundle, Task
 from andon.bake.tasks.outcomes import Fault, Outcome, performed
+from andon.errors import MachineError
 from andon.files.radiance_programs import radiance_version
 
-__all__ = ["Inputs", "performed_there", "version"]
+__all__ = ["Folders", "held", "performed_there", "version"]
 
 
 def version() -> str:
@@ -24,49 +28,75 @@ def version() -> str:
     return f"Andon {__version__}, pyradiance {radiance_version()}"
 
 
-class Inputs(WorkerPlugin):
-    """A plugin of workers: bundles as folders, from when a worker starts until it is unregistered.
+def held(bundle: Bundle, /) -> Bundle:
+    """A bundle as a result, which Dask moves between workers and asks for again if one dies."""
+    return bundle
+
+
+class Folders(WorkerPlugin):
+    """A plugin of workers: bundles as folders, as long as tasks that are out read them.
 
     Dask sends it to each worker and to those that come later, and calls `setup` and `teardown`.
     The folders lie in the one that Dask gives a worker, which goes with it.
 
     Attributes
     ----------
-    folders : digest → folder, on a worker.
-    fault : why it is of no use; a worker with a full disk, or one of another version that comes
-        later, still starts, and says so task by task.
+    fault : why it is of no use; a worker of another version that comes later still starts, and says
+        so task by task.
     """
 
-    def __init__(self, name: str, bundles: Mapping[str, Bundle]) -> None:
+    def __init__(self, name: str) -> None:
         self.name, self.version = name, version()
-        self.bundles = {digest: dict(bundle) for digest, bundle in bundles.items()}
-        self.folders: dict[str, Path] = {}
         self.fault: str | None = None
-        self._root: Path | None = None
 
     def setup(self, worker: Any) -> None:
-        """Writes the folders."""
+        """Finds the place of the folders."""
         if version() != self.version:
             self.fault = f"{worker.address} has {version()}, not {self.version}"
         self._root = Path(worker.local_directory).resolve() / self.name
-        try:
-            for digest, bundle in self.bundles.items():
-                self.folders[digest] = write_bundle(self._root / digest, bundle)
-        except OSError as error:
-            self.fault = f"{self._root}: cannot be written: {error.strerror or error}"
-        self.bundles.clear()
+        self._bundles: dict[str, Bundle] = {}
+        self._inputs = Inputs(self._root, self._bundles)
+        self._readers, self._lock = Counter[str](), Lock()
 
     def teardown(self, worker: Any) -> None:
         """Removes them."""
-        if self._root is not None:
-            shutil.rmtree(self._root, ignore_errors=True)
+        shutil.rmtree(self._root, ignore_errors=True)
+
+    @contextmanager
+    def of(
+        self, task: Task, bundles: Mapping[str, Bundle], out: Collection[str]
+    ) -> Generator[dict[str, Path]]:
+        """What `task` reads, its `bundles`, as folders; those go that no task reads.
+
+        `out` are the bundles of all tasks that were out when this one was sent. Raises
+        `MachineError` where one cannot be written.
+        """
+        with self._lock:
+            self._readers.update(bundles.keys())
+            for digest in [each for each in self._bundles if each not in out]:
+                if not self._readers[digest]:
+                    self._inputs.drop(digest)
+                    del self._bundles[digest]
+            self._bundles |= bundles
+        try:
+            with self._lock:
+                folders = self._inputs.of(task)
+            yield folders
+        finally:
+            with self._lock:
+                self._readers.subtract(bundles.keys())
 
 
-def performed_there(task: Task, name: str, /) -> Outcome:
-    """Does a task with the inputs of the plugin `name`."""
+def performed_there(
+    task: Task, name: str, bundles: Mapping[str, Bundle], out: Collection[str], /
+) -> Outcome:
+    """Does a task with the plugin `name`; see `Folders.of`."""
     worker: Any = get_worker()
-    inputs: Inputs = worker.plugins[name]
-    if inputs.fault is not None:
-        return Outcome(task.key, Fault("machine", inputs.fault), worker=worker.address)
-    folders = {each: inputs.folders[digest] for each, digest in task.inputs.items()}
-    return performed(task, folders, worker.address)
+    there: Folders = worker.plugins[name]
+    if there.fault is not None:
+        return Outcome(task.key, Fault("machine", there.fault), worker=worker.address)
+    try:
+        with there.of(task, bundles, out) as folders:
+            return performed(task, folders, worker.address)
+    except MachineError as error:
+        return Outcome(task.key, Fault("machine", str(error)), worker=worker.address)

@@ -8,26 +8,51 @@ from collections.abc import Generator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
 
-from andon.bake.tasks.model import Bundle
+from andon.bake.tasks.model import Bundle, Task
 from andon.errors import MachineError
 
-__all__ = ["inputs_in", "remove_inputs", "write_bundle"]
+__all__ = ["Inputs", "inputs_in", "remove_inputs", "write_bundle"]
 
 NAME = "inputs"
 
 
+class Inputs:
+    """digest → ``folder/inputs/<digest>``, whose files are those of the bundle.
+
+    A bundle is written when it is asked for first, and stays until it is dropped: those of a film
+    are more than a disk holds.
+    """
+
+    def __init__(self, folder: Path, bundles: Mapping[str, Bundle]) -> None:
+        self._root, self._bundles = folder / NAME, bundles
+        self._there: dict[str, Path] = {}
+
+    def __getitem__(self, digest: str, /) -> Path:
+        """The folder of a bundle. Raises `MachineError` where it cannot be written."""
+        if digest not in self._there:
+            self._there[digest] = _written(self._root / digest, self._bundles[digest])
+        return self._there[digest]
+
+    def of(self, task: Task, /) -> dict[str, Path]:
+        """The folders of what a task reads, by its own names."""
+        return {name: self[digest] for name, digest in task.inputs.items()}
+
+    def drop(self, digest: str, /) -> None:
+        """Removes a bundle, if it is there."""
+        path = self._there.pop(digest, None)
+        if path is not None:
+            shutil.rmtree(path, ignore_errors=True)
+
+
 @contextmanager
-def inputs_in(folder: Path, bundles: Mapping[str, Bundle], /) -> Generator[dict[str, Path]]:
-    """digest → ``folder/inputs/<digest>``, whose files are those of the bundle; removed afterwards.
+def inputs_in(folder: Path, bundles: Mapping[str, Bundle], /) -> Generator[Inputs]:
+    """Bundles as folders, while they are needed; all are removed afterwards.
 
     What a killed bake has left is removed and written again, since nobody knows how far it came.
-    Raises `MachineError` where they cannot be written.
     """
     remove_inputs(folder)
     try:
-        yield {
-            digest: _written(folder / NAME / digest, bundle) for digest, bundle in bundles.items()
-        }
+        yield Inputs(folder, bundles)
     finally:
         remove_inputs(folder)
 

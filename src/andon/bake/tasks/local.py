@@ -21,7 +21,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
-from andon.bake.tasks.inputs import inputs_in
+from andon.bake.tasks.inputs import Inputs, inputs_in
 from andon.bake.tasks.model import Bundle, Task
 from andon.bake.tasks.outcomes import Fault, Outcome
 from andon.bake.tasks.worker import read_frame, write_frame
@@ -48,8 +48,8 @@ class LocalWorkers:
     @contextmanager
     def started(self, bundles: Mapping[str, Bundle], folder: Path, /) -> Generator[_LocalPool]:
         """Workers whose inputs are in ``folder/inputs`` meanwhile; see `Workers`."""
-        with inputs_in(folder, bundles) as folders:
-            pool = _LocalPool(self.count, folders)
+        with inputs_in(folder, bundles) as inputs:
+            pool = _LocalPool(self.count, inputs)
             try:
                 yield pool
             finally:
@@ -65,8 +65,8 @@ def _cores() -> int:
 class _LocalPool:
     """See `Pool`."""
 
-    def __init__(self, count: int, folders: Mapping[str, Path]) -> None:
-        self.count, self._folders = count, folders
+    def __init__(self, count: int, inputs: Inputs) -> None:
+        self.count, self._inputs = count, inputs
         self._heard: queue.SimpleQueue[tuple[_Worker, Outcome | None]] = queue.SimpleQueue()
         self._idle: list[_Worker] = []
         self._busy: dict[_Worker, Task] = {}
@@ -77,9 +77,13 @@ class _LocalPool:
         return self.count - len(self._busy)
 
     def start(self, task: Task, /) -> None:
+        folders = self._inputs.of(task)  # first: a full disk should lose no worker
         worker = self._idle.pop() if self._idle else self._new()
         self._busy[worker] = task
-        worker.give(task, {name: self._folders[each] for name, each in task.inputs.items()})
+        worker.give(task, folders)
+
+    def drop(self, digest: str, /) -> None:
+        self._inputs.drop(digest)
 
     def next(self) -> Outcome:
         while True:

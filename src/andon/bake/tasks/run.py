@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from time import perf_counter
@@ -75,8 +75,11 @@ def run_tasks(
 
     Parameters
     ----------
-    tasks : those of the same key are done once; what the store has whole is not done.
-    bundles : digest → files, at least those that tasks name as inputs.
+    tasks : those of the same key are done once; what the store has whole is not done. They begin
+        in this order: a bundle is kept from the first that reads it to the last, so those that
+        read the same one should follow each other.
+    bundles : digest → files, at least those that tasks name as inputs. What is made when its files
+        are asked for is not asked before a task needs it.
     store : is held until all is done; what is in it and not asked for stays.
     workers : who does them; not started where there is nothing to do.
     progress : called at the beginning and after each task that has ended.
@@ -105,11 +108,14 @@ def run_tasks(
         run.damaged = store.damaged - damaged
         run.tell("")
         if missing:
-            wanted = {each for task in missing.values() for each in task.inputs.values()}
-            chosen = {each: bundles[each] for each in sorted(wanted)}
-            with workers.started(chosen, store.folder) as pool:
+            with workers.started(bundles, store.folder) as pool:
                 run.do(pool)
     return run.report(perf_counter() - start)
+
+
+def _read_by(task: Task) -> set[str]:
+    """Bundles, each once."""
+    return set(task.inputs.values())
 
 
 class _Run:
@@ -130,6 +136,8 @@ class _Run:
         self.seconds = 0.0
         self.failed: list[tuple[str, str]] = []
         self.spent = dict.fromkeys(missing, 0)
+        # bundle → tasks that are still to end and read it
+        self.readers = Counter(name for task in missing.values() for name in _read_by(task))
 
     def do(self, pool: Pool) -> None:
         """Does what is missing; failed ones come again after all others."""
@@ -142,9 +150,18 @@ class _Run:
                 running += 1
             outcome = pool.next()
             running -= 1
-            if not self._ended(outcome):
+            if self._ended(outcome):
+                self._drop(self.missing[outcome.key], pool)
+            else:
                 waiting.append(self.missing[outcome.key])
             self.workers = max(self.workers, pool.count)
+
+    def _drop(self, task: Task, pool: Pool) -> None:
+        """Says which bundles nobody reads any more, now that `task` has ended."""
+        for name in _read_by(task):
+            self.readers[name] -= 1
+            if not self.readers[name]:
+                pool.drop(name)
 
     def _ended(self, outcome: Outcome) -> bool:
         """Whether the task is finished or given up."""

@@ -27,7 +27,14 @@ class Pool(Protocol):
         ...
 
     def start(self, task: Task, /) -> None:
-        """Hands out a task. Raises `MachineError` where there is nobody to do it."""
+        """Hands out a task, with what it reads.
+
+        Raises `MachineError` where there is nobody to do it, or no room for what it reads.
+        """
+        ...
+
+    def drop(self, digest: str, /) -> None:
+        """No task that runs or comes reads this bundle; it need not be kept."""
         ...
 
     def next(self) -> Outcome:
@@ -44,8 +51,9 @@ class Workers(Protocol):
     def started(
         self, bundles: Mapping[str, Bundle], folder: Path, /
     ) -> AbstractContextManager[Pool]:
-        """Workers that have `bundles` (digest → files); killed afterwards, whatever they do.
+        """Workers that get `bundles` (digest → files) with the tasks that read them.
 
-        `folder` is the store's. Raises `MachineError` where they cannot be started.
+        They are killed afterwards, whatever they do. `folder` is the store's. Raises
+        `MachineError` where they cannot be started.
         """
         ...

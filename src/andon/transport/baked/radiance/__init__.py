@@ -2,7 +2,8 @@
 
 ::
 
-    parts, lamps, bodies ──radiance_bundle──▶ scene.rad, *.cal, *.dat, *.hdr, *.rtm, scene.oct
+    parts, lamps, bodies ──radiance_bundle──▶ surfaces.rad, *.cal, *.dat, *.hdr, *.rtm
+                                              lamps.rad, scene.oct; bounce.rad, bounce.oct
 
 Three sorts of thing have to be said in another's terms: surfaces, lamps, and lamps in shells.
 

@@ -14,7 +14,12 @@ from numpy.typing import NDArray
 from andon.quantities import Geometry, Material
 from andon.transport.baked.radiance.materials import finish_of, material_text
 from andon.transport.baked.radiance.text import polygons_text
-from andon.transport.baked.radiance.textures import mesh_obj, picture_bytes, texture_text
+from andon.transport.baked.radiance.textures import (
+    mesh_obj,
+    picture_bytes,
+    picture_size,
+    texture_text,
+)
 
 __all__ = ["Surfaces", "surfaces_of", "without_near"]
 
@@ -42,8 +47,9 @@ def surfaces_of(parts: Sequence[Geometry], /, *, emission: bool, black: bool) ->
                 text.append(material_text(name, finish))
                 text.append(polygons_text(geometry.positions[own], name))
             elif mesh := mesh_obj(geometry, own):
-                pictures[f"{name}.hdr"] = _picture(material, place)
-                text.append(texture_text(f"{name}.t", material.texture, f"{name}.hdr"))
+                size = picture_size(material.texture, geometry, own)
+                pictures[f"{name}.hdr"] = _picture(material, size, place)
+                text.append(texture_text(f"{name}.t", size, f"{name}.hdr"))
                 text.append(material_text(name, finish, pattern=f"{name}.t"))
                 text.append(f"{name} mesh {name}.m 1 {name}.rtm 0 0\n")
                 meshes[name] = mesh
@@ -60,11 +66,11 @@ def _by_material(geometry: Geometry) -> list[tuple[int, NDArray[np.int32]]]:
     return [(int(number), own) for number, own in zip(numbers, parts, strict=False) if len(own)]
 
 
-def _picture(material: Material, field: str) -> bytes:
+def _picture(material: Material, size: tuple[int, int], field: str) -> bytes:
     assert material.texture is not None
     # No surface reflects more than all.
     most = 1 / np.maximum(np.asarray(material.reflectance, np.float64), 1e-6)
-    return picture_bytes(material.texture, most, f"{field}.texture")
+    return picture_bytes(material.texture, size, most, f"{field}.texture")
 
 
 def without_near(geometry: Geometry, place: Float, radius_m: float, /) -> Geometry:

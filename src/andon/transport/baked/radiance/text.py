@@ -12,23 +12,12 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 
-__all__ = [
-    "BOUNCE_OCTREE",
-    "LUMENS_PER_WATT",
-    "OCTREE",
-    "joined",
-    "light_text",
-    "polygons_text",
-    "triple",
-    "unit",
-]
+__all__ = ["LUMENS_PER_WATT", "joined", "light_text", "polygons_text", "triple", "unit"]
 
 Float = NDArray[np.float64]
 
 # Radiance's own luminous efficacy, lm/W, applied channel by channel.
 LUMENS_PER_WATT = 179.0
-# What programs compile of it: lamps in all detail, and of few tiles for what surfaces reflect.
-OCTREE, BOUNCE_OCTREE = "scene.oct", "bounce.oct"
 
 
 def joined(values: NDArray[Any], /) -> str:

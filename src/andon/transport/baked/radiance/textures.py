@@ -24,13 +24,21 @@ from andon.quantities import Geometry
 from andon.responses import srgb_decode
 from andon.transport.baked.radiance.text import joined
 
-__all__ = ["TEXTURE_CAL", "TEXTURE_FILE", "mesh_obj", "picture_bytes", "texture_text"]
+__all__ = [
+    "TEXTURE_CAL",
+    "TEXTURE_FILE",
+    "mesh_obj",
+    "picture_bytes",
+    "picture_size",
+    "texture_text",
+]
 
 Float = NDArray[np.float64]
 
-# More pixels than this along a side are averaged: what is reflected does not show them, and
-# pictures travel to every worker.
+# Pixels beyond these are averaged: what is reflected does not show them, and pictures travel to
+# every worker. More than so many along a side, and finer than so many metres on the surface.
 MOST_PX = 1024
+FINEST_M = 0.005
 
 # A1 and A2 are width and height of the picture without its rim, A3 the shorter side with it.
 TEXTURE_FILE = "texture.cal"
@@ -45,9 +53,9 @@ tex_b(r, g, b) = b;
 """
 
 
-def texture_text(name: str, texture: NDArray[Any], picture: str) -> str:
-    """Definition of the pattern `name` that looks a texture up in the file `picture`."""
-    height, width = _size(texture)
+def texture_text(name: str, size: tuple[int, int], picture: str) -> str:
+    """Definition of the pattern `name` that looks up the file `picture` of `size`, rows first."""
+    height, width = size
     sides = joined(np.array([width, height, min(width, height) + 2]))
     return (
         f"void colorpict {name} 7 tex_r tex_g tex_b {picture} {TEXTURE_FILE} tex_u tex_v "
@@ -55,24 +63,56 @@ def texture_text(name: str, texture: NDArray[Any], picture: str) -> str:
     )
 
 
-def _size(texture: NDArray[Any]) -> tuple[int, int]:
-    return min(texture.shape[0], MOST_PX), min(texture.shape[1], MOST_PX)
+def picture_size(
+    texture: NDArray[Any], geometry: Geometry, triangles: NDArray[np.int32]
+) -> tuple[int, int]:
+    """Rows and columns of the picture of a texture (h, w, 3) that `triangles` (m, 3) have.
+
+    No more than the texture has, and as many as `FINEST_M` takes where it is stretched the most.
+    """
+    height, width = texture.shape[:2]
+    columns, rows = np.ceil(np.minimum(_stretch(geometry, triangles) / FINEST_M, MOST_PX))
+    return min(height, max(int(rows), 1)), min(width, max(int(columns), 1))
 
 
-def picture_bytes(texture: NDArray[Any], most: Float, field: str = "texture") -> bytes:
-    """A Radiance picture of a texture (h, w, 3), linear, with its rim; no channel above `most`."""
+def _stretch(geometry: Geometry, triangles: NDArray[np.int32]) -> Float:
+    """(2,) metres for which u and v change by 1, the most of all triangles.
+
+    Infinite where a triangle is a line or point in the texture but not in the world.
+    """
+    assert geometry.uvs is not None
+    corners, uvs = geometry.positions[triangles], geometry.uvs[triangles].astype(np.float64)
+    along, across = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    (u1, v1), (u2, v2) = (uvs[:, 1] - uvs[:, 0]).T, (uvs[:, 2] - uvs[:, 0]).T
+    area = (u1 * v2 - u2 * v1)[:, None]
+    by_u = np.linalg.norm(along * v2[:, None] - across * v1[:, None], axis=1, keepdims=True)
+    by_v = np.linalg.norm(across * u1[:, None] - along * u2[:, None], axis=1, keepdims=True)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        metres = np.hstack([by_u, by_v]) / np.abs(area)
+    seen = np.linalg.norm(np.cross(along, across), axis=1) > 0
+    found: Float = np.where(np.isfinite(metres), metres, np.inf)[seen].max(axis=0, initial=0.0)
+    return found
+
+
+def picture_bytes(
+    texture: NDArray[Any], size: tuple[int, int], most: Float, field: str = "texture"
+) -> bytes:
+    """A Radiance picture of a texture (h, w, 3), linear, with its rim; no channel above `most`.
+
+    `size` : rows and columns without the rim; pixels are averaged.
+    """
     if texture.ndim != 3 or texture.shape[2] < 3 or 0 in texture.shape:
         raise InputError(f"must be (h, w, 3), got {texture.shape}", field=field)
     colours = texture[..., :3]
     linear = srgb_decode(colours / 255.0) if colours.dtype == np.uint8 else colours
     linear = np.clip(np.nan_to_num(np.asarray(linear, np.float64)), 0, most)
-    height, width = _size(texture)
-    if linear.shape[:2] != (height, width):
+    height, width = size
+    if linear.shape[:2] != size:
         import cv2
 
         linear = np.asarray(
             cv2.resize(linear, (width, height), interpolation=cv2.INTER_AREA), np.float64
-        )
+        ).reshape(height, width, 3)
     rimmed = np.pad(linear, ((1, 1), (1, 1), (0, 0)), mode="wrap")
     header = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height + 2} +X {width + 2}\n"
     return header.encode("ascii") + _rgbe(rimmed).tobytes()

@@ -88,8 +88,8 @@ class DaskWorkers:
             security = distributed.Security(
                 tls_ca_file=ca, tls_client_cert=cert, tls_client_key=key, require_encryption=True
             )
-        # Clients that were lost end when Python finds them; if that is while another one starts, both
-        # wait for one lock of the library for ever.
+        # Clients that were lost end when Python finds them; if that is while another one starts,
+        # both wait for one lock of the library for ever.
         gc.collect()
         try:
             client = distributed.Client(

@@ -9,6 +9,7 @@ import pytest
 import andon
 from andon.composite.model import Ambient
 from andon.composite.reference import lamp_luminance, object_luminance, relit_linear
+from andon.engines.baked_light import part_of
 from andon.engines.prepared import prepare
 from andon.errors import InputError
 from andon.files.illuminance_maps import (
@@ -37,10 +38,13 @@ from andon.lamps import (
 from andon.lamps.distributions import spot_attenuation
 from andon.lamps.sources import resolve_sources
 from andon.observer.spread.family import spread_function
-from andon.quantities import CameraFrame, photometric
+from andon.quantities import CameraFrame, Geometry, photometric
 from andon.responses import SRGB
 from andon.spaces import View, look_at
-from andon.transport.baked import BakedMoment, IlluminanceMap
+from andon.transport.baked import BakedLight, BakedMoment, IlluminanceMap
+from andon.transport.baked.radiance import radiance_bundle
+from andon.transport.baked.radiance.quality import QUALITIES
+from andon.transport.baked.radiance.trace import traced_illuminance
 from andon.transport.baked.reference import baked_illuminance
 from andon.transport.direct.reference import illuminance
 
@@ -329,6 +333,32 @@ def test_illuminance_maps(tmp_path):
     found, covered = baked_illuminance(moment, points, normals, shares={"lantern": 0.5})
     assert covered.tolist() == [True, False, False]
     close(found[0], [54, 100, 0], rtol=1e-5)
+
+
+def test_counted_once(tmp_path):
+    """Before a grey wall: all light of a lamp less what is reflected of it is its direct light."""
+    wall = [[-2, 0, -1], [2, 0, -1], [2, 3, -1], [-2, 3, -1]]
+    floor = [[-2, 0, 2], [2, 0, 2], [2, 0, -1], [-2, 0, -1]]
+    sides = np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]], np.int32)
+    lamp = PointLamp("lamp", np.array([0.0, 2, 0]), np.array([60.0, 80, 100]))
+    bundle = radiance_bundle([Geometry(np.array([*wall, *floor], float), sides)], [lamp])
+    for name, contents in bundle.items():
+        (tmp_path / name).write_bytes(contents)
+    options = {"quality": QUALITIES["draft"], "bounces": 2}
+    every, bounce = (
+        traced_illuminance(tmp_path, ORIGIN[None], Y[None], part=part_of(transport), **options)
+        for transport in ("baked", "direct+bounce")
+    )
+    assert part_of("direct") is None
+    assert (bounce > 1).all()
+    close(every - bounce, [lamp.intensity_cd / 4], rtol=1e-3)
+
+
+def test_moments():
+    light = BakedLight((1.0, 3.0), lambda _: None, lambda _: {})
+    assert light.around(1.5) == (0, 1, 0.25)
+    assert light.around(0.0) == (0, 0, 0.0)
+    assert light.around(9.0) == (1, 1, 0.0)
 
 
 def test_alpha(tmp_path):

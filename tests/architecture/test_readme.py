@@ -15,6 +15,7 @@ from .tree import ROOT
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = re.findall(r"`andon (relight [^`]*)`", README)
 PROBE_COMMANDS = re.findall(r"`andon (probes [^`]*)`", README)
+BAKE_COMMANDS = re.findall(r"`andon (bake [^`]*)`", README)
 GLARE_COMMANDS = re.findall(r"`andon (glare [^`]*)`", README)
 PYTHON = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
 FILES = dict(re.findall(r"```toml\n# ([\w.]+)[^\n]*\n(.*?)```", README, re.DOTALL))
@@ -34,7 +35,14 @@ def folder(tmp_path, monkeypatch):
 def test_it_shows_something():
     assert len(COMMANDS) >= 4
     assert [command.split()[1] for command in PROBE_COMMANDS] == ["place", "bake", "show", "export"]
-    assert set(FILES) == {"camera.toml", "night.toml", "probes.toml", "ball.toml", "eye.toml"}
+    names = {"camera", "night", "room", "probes", "ball", "eye"}
+    assert set(FILES) == {f"{name}.toml" for name in names}
+    assert [command.split()[1] for command in BAKE_COMMANDS] == [
+        "room.toml",
+        "cameras",
+        "show",
+        "status",
+    ]
     assert len(GLARE_COMMANDS) == 5
     assert len(PYTHON) == 4
 
@@ -53,6 +61,27 @@ def test_python(folder, capsys):
     names = {}
     exec(compile(PYTHON[0], "README.md", "exec"), names)
     assert names["frame"].illuminance.lux.max() > 10
+
+
+def test_baked_light(folder, capsys):
+    shutil.copy(ROOT / "examples" / "basic" / "room.glb", folder)
+    for command in BAKE_COMMANDS:
+        assert _run(shlex.split(command), debug=True) == 0
+    assert "done" in capsys.readouterr().out
+    assert (folder / "plan.png").is_file()
+    assert (folder / "maps.png").is_file()
+    words = ["relight", "--scene", "room.toml", "-o", "baked.png", "--engine", "reference"]
+    assert _run([*words, "--uncovered", "gaps.png"], debug=True) == 0
+    direct = FILES["room.toml"].partition("[baked]")[0].replace('"direct+bounce"', '"direct"')
+    (folder / "direct.toml").write_text(direct, encoding="utf-8")
+    words[2], words[4] = "direct.toml", "direct.png"
+    assert _run(words, debug=True) == 0
+    baked, alone = (read_picture(folder / f"{name}.png").values for name in ("baked", "direct"))
+    assert (baked >= alone - 1.0).all()
+    # What the bulb does not see is black without the walls' light.
+    shadow = (alone.max(axis=-1) == 0) & (baked.max(axis=-1) > 0)
+    assert shadow.mean() > 0.05
+    assert (folder / "gaps.png").is_file()
 
 
 def test_probes(folder, capsys):

@@ -117,6 +117,24 @@ def test_lamps_that_are_not_in_probes_stay_out(tmp_path, engine):
     np.testing.assert_array_equal(capture.luminance_cd_m2, 0)
 
 
+def test_lamps_that_are_in_illuminance_maps_are_captured_like_others(tmp_path, engine):
+    """Probes have no maps: they find out themselves what surfaces reflect of a lamp."""
+    lamp = {"kind": "point", "name": "lamp", "position": [0, 1, 0], "intensity_cd": 9.0}
+    table = {"folder": "maps", "lamps": ["lamp"]}
+    captures = [
+        taken(lamp_room(tmp_path, lamp=[lamp | own], **more), (0.1, 0.3, 0.2), engine)[0]
+        for own, more in (
+            ({}, {}),
+            ({"transport": "baked"}, {"baked": table}),
+            ({"transport": "direct+bounce"}, {"baked": table}),
+        )
+    ]
+    direct = captures[0].luminance_cd_m2
+    assert direct.max() > 0
+    for capture in captures[1:]:
+        np.testing.assert_array_equal(capture.luminance_cd_m2, direct)
+
+
 def test_light_that_is_no_number_counts_as_none():
     from andon.transport.probes.capture import Lighting, Seen
 

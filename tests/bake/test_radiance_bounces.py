@@ -17,6 +17,7 @@ from andon.errors import InputError, MachineError
 from andon.files.volumes import read_volume
 from andon.quantities import Geometry
 from andon.transport.probes.photograph import Shown
+from requirements import required
 from worlds import ball, block, scene, sheet, write_glb
 
 RADIANCE = {"bounces_by": "radiance", "cube_size_px": 8}
@@ -258,7 +259,7 @@ def test_workers_trace_the_same_light(tmp_path):
 
 
 def test_a_cluster_traces_the_same_light(tmp_path):
-    distributed = pytest.importorskip("distributed", reason="pip install 'andon[cluster]'")
+    distributed = required("distributed")
     loaded = lamp_room(tmp_path, probes=RADIANCE | HAND | {"bounces": 2})
     alone = bake_file(loaded, engine="reference").path.read_bytes()
     (tmp_path / "probes.glb").unlink()

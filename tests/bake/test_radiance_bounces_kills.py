@@ -82,8 +82,9 @@ def test_kill_at_any_moment_gives_the_same_bytes(tmp_path):
     ("more", "rule"),
     [
         (["--bounces-by", "photons"], "must be probes or radiance"),
-        (["--workers", "0"], "must be ≥ 1"),
-        (["--workers", "1", "--scheduler", "tcp://x:1"], "excludes it"),
+        (["--workers", "0"], "--workers"),
+        (["--workers", "1", "--scheduler", "tcp://x:1"], "exclude each other"),
+        (["--tls-ca", "a.pem"], "belongs to --scheduler"),
     ],
 )
 def test_options_that_cannot_be_are_refused(tmp_path, more, rule):

@@ -17,8 +17,9 @@ from works_for_tasks import BUNDLES, DIGEST, Inline, contents, logged, task, tas
 
 from andon.bake.tasks import DaskWorkers, Store, Task, bundle_digest, run_tasks, tasks_status
 from andon.errors import MachineError
+from requirements import missing, required
 
-distributed = pytest.importorskip("distributed", reason="pip install 'andon[cluster]'")
+distributed = required("distributed")
 
 
 @contextmanager
@@ -153,7 +154,7 @@ def test_a_worker_of_another_version_is_refused(tmp_path, monkeypatch):
 
     inputs = cluster_worker.Folders("inputs")
     with cluster(tmp_path / "dask", 1) as (address, _, _), monkeypatch.context() as patched:
-        patched.setattr(cluster_worker.metadata, "version", lambda name: "9")
+        patched.setattr(cluster_worker, "radiance_version", lambda: "9")
         with pytest.raises(MachineError, match=r"has not Andon .*, pyradiance 9: Andon .*install"):
             run_tasks(tasks(1), BUNDLES, Store(tmp_path / "maps"), workers=DaskWorkers(address))
         # One that comes when all others have been asked says so itself.
@@ -259,8 +260,9 @@ def certificates(folder):
     return cert, cert, key
 
 
-@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificates")
 def test_certificates_keep_others_out(tmp_path, log):
+    if shutil.which("openssl") is None:
+        missing("openssl makes the certificates")
     ca, cert, key = certificates(tmp_path)
     security = ("--tls-ca-file", ca, "--tls-cert", cert, "--tls-key", key)
     with cluster(tmp_path / "dask", 1, *security) as (address, _, _):

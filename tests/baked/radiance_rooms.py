@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from andon.bake.tasks import write_bundle
 from andon.lamps import PointLamp, SkyLamp
 from andon.lamps.solids import icosphere
 from andon.quantities import Geometry, Material
@@ -13,14 +14,6 @@ RADIUS_M = 2.0
 UP = np.array([0.0, 1.0, 0.0])
 
 
-def written(folder, bundle):
-    """The folder, with the bundle's files."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, contents in bundle.items():
-        (folder / name).write_bytes(contents)
-    return folder
-
-
 def ball_room(folder):
     """Inside of a ball around a point lamp: E = I/r²·Σ ρᵏ everywhere (integrating sphere)."""
     ball = icosphere(3)
@@ -30,7 +23,7 @@ def ball_room(folder):
         materials=(Material(reflectance=REFLECTANCE),),
     )
     lamp = PointLamp("lamp", np.zeros(3), CANDELA)
-    return written(folder, radiance_bundle([inside], [lamp]))
+    return write_bundle(folder, radiance_bundle([inside], [lamp]))
 
 
 def ball_points(count, seed=0):
@@ -52,7 +45,7 @@ def floor(folder, lamps):
     corners = np.array([[-2.0, 0, -2], [-2, 0, 2], [2, 0, 2], [2, 0, -2]])
     grey = (Material(reflectance=(0.5, 0.5, 0.5)),)
     square = Geometry(corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32), materials=grey)
-    return written(folder, radiance_bundle([square], lamps))
+    return write_bundle(folder, radiance_bundle([square], lamps))
 
 
 def sky(lux=100.0):

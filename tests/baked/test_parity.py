@@ -11,7 +11,9 @@ from andon.gpu.device import open_gpu
 from andon.surface.objects import joined
 from andon.surface.stage import SurfaceStage
 from andon.transport.baked import BakedLight, BakedMoment, illuminance_at, texels
-from andon.transport.baked.atlas import Place, atlas_of
+from andon.transport.baked.atlas import Atlas, Place, atlas_of
+from andon.transport.baked.records import check_memory
+from andon.transport.baked.rims import with_rims
 from andon.transport.baked.stage import BakedBuffers, BakedPicture
 from andon.verify.setting import prepared_of
 from baked.scenes import baked_map, candles, fisheye, latlong, pinhole, still
@@ -66,12 +68,23 @@ class Frame:
         assert set(np.unique(got[..., 3])) <= {0.0, 1.0}
         known = got[shown][:, 3] > 0
         assert np.mean(known != covered) <= 1e-3
-        assert not got[shown][~known].any()
+        self.assert_rims(got, lux, covered)
         both = known & covered
         assert both.mean() > 0.3
         # Where the ball turns away from the lamp a dark texel lies beside a bright one: float32
         # knows the place between them to 1e-5 texels, which is a large share of little light.
         assert_agree(got[shown][both, :3], lux[both], rtol=1e-3, atol=1e-5 * lux.max())
+
+    def assert_rims(self, got, lux, covered):
+        """What no map sees has the light of its rims, in both engines' pictures the same."""
+        shown, known = self.surface.valid, got[..., 3] > 0
+        truth, both = np.zeros((*shown.shape, 3)), np.zeros_like(shown)
+        truth[shown], both[shown] = lux * covered[:, None], covered
+        rims = with_rims(truth, both, self.surface, self.light.depth_tolerance_m)
+        bare = shown & ~known & ~both
+        off = np.abs(got[bare, :3] - rims[bare]).max(axis=-1, initial=0.0)
+        # Beside a pixel that only one of both engines calls covered the rims differ.
+        assert np.mean(off > 2e-3 * rims[bare].max(axis=-1, initial=0.0) + 1e-5 * lux.max()) < 0.01
 
 
 @pytest.mark.parametrize("mode", ["blend", "first_valid"])
@@ -197,6 +210,13 @@ def test_more_than_shaders_hold_is_refused(maps, lamps):
     )
     with pytest.raises(MachineError, match="more than shaders hold"):
         BakedBuffers(open_gpu(), still(*[seen] * maps))
+
+
+def test_maps_that_no_adapter_holds_are_refused():
+    """Before any memory is asked for; two moments of 8192² texels and no lamp fit."""
+    check_memory(Atlas(8192, 8192, 1, ()), lamps=0, moments=2)
+    with pytest.raises(MachineError, match=r"need 5\.0 GiB .* more than 4"):
+        check_memory(Atlas(8192, 8192, 1, ()), lamps=1, moments=2)
 
 
 def test_constants_are_those_of_the_reference():

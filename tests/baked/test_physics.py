@@ -1,12 +1,20 @@
 """Maps of known light, projected into other views, against the closed form."""
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
 from andon.surface.objects import joined
 from andon.surface.reference import trace
-from andon.transport.baked import BakedLight, BakedMoment, baked_illuminance, illuminance_at
-from andon.transport.baked.coverage import uncovered_area, uncovered_pixels
+from andon.transport.baked import (
+    BakedLight,
+    BakedMoment,
+    baked_illuminance,
+    illuminance_at,
+    texels,
+)
 from baked.scenes import baked_map, candles, fisheye, latlong, pinhole, still
 from worlds import ball, block, sheet
 
@@ -247,7 +255,7 @@ def test_first_valid_follows_the_order_of_the_cameras(order):
 
 
 def test_covered_is_what_the_map_sees():
-    """Straight from above a map sees a square: that is covered, and counted, exactly."""
+    """Straight from above a map sees a square: exactly that is covered."""
     view = pinhole(64, 64, (0.3, 2.0, 0.1), (0.3, 0, 0.1 - 1e-9), 1.2)
     light = still(baked_map(FLOOR, view))
     half = 32 / view.fx * 2.0
@@ -255,11 +263,6 @@ def test_covered_is_what_the_map_sees():
     x, z = generator.uniform(-4, 4, (2, 5000))
     _, covered = asked(light, *floor_points(x, z))
     np.testing.assert_array_equal(covered, np.maximum(np.abs(x - 0.3), np.abs(z - 0.1)) < half)
-    share = 1 - (2 * half) ** 2 / 64
-    assert uncovered_area(light, FLOOR) == pytest.approx(share, abs=3 * 0.5 / 64)
-    seen = trace(FLOOR, pinhole(80, 60, (1, 3, 2), (0, 0, 0)), is_object=False)
-    square = np.abs(seen.position - (0.3, 0, 0.1))[..., [0, 2]].max(axis=-1) < half
-    np.testing.assert_array_equal(uncovered_pixels(light, seen), seen.valid & ~square)
 
 
 def test_nothing_covers_points_that_face_away():
@@ -361,3 +364,22 @@ def test_points_that_are_nowhere_or_at_the_camera():
         lux, covered = asked(light, position, np.tile(UP, (5, 1)))
         assert covered.tolist() == [False, False, False, False, True]
         np.testing.assert_allclose(lux[4], 7)
+
+
+# ── what is kept ────────────────────────────────────────────────────────────────────────────────
+
+
+def test_texels_are_made_once_and_go_with_their_map(monkeypatch):
+    """However many maps there are: frames between two moments ask for those of both in turn."""
+    made, make = [], texels.texels_of
+    monkeypatch.setattr(texels, "texels_of", lambda *args: made.append(1) or make(*args))
+    view = pinhole(4, 3, (0, 2, 0.1), (0, 0, 0))
+    light = still(*(baked_map(FLOOR, view) for _ in range(40)))
+    for _ in range(2):
+        asked(light, *floor_points([0.0, 0.1], 0.0))
+    assert len(made) == 40
+    kept = weakref.ref(texels.kept_texels(light.load(0).maps[0], light.depth_tolerance_m))
+    assert len(made) == 40
+    del light
+    gc.collect()
+    assert kept() is None

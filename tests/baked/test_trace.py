@@ -15,10 +15,9 @@ from andon.errors import InputError, MachineError
 from andon.files import radiance_programs
 from andon.lamps import PointLamp
 from andon.transport.baked.radiance.quality import QUALITIES
-from andon.transport.baked.radiance.trace import traced_illuminance, traced_luminance
+from andon.transport.baked.radiance.trace import traced_illuminance
 from baked.radiance_rooms import (
     CANDELA,
-    REFLECTANCE,
     UP,
     ball_lux,
     ball_points,
@@ -72,14 +71,6 @@ def test_no_more_bounces_than_asked(ball, quality, count):
     expected = ball_lux(2, first=1)
     np.testing.assert_allclose(reflected.mean(axis=0), expected, rtol=0.01)
     np.testing.assert_allclose(reflected, np.tile(expected, (count, 1)), rtol=0.1)
-
-
-def test_luminance_in_an_integrating_sphere(ball):
-    """L = ρE/π."""
-    along = ball_points(12)[1]
-    seen = traced_luminance(ball, 1.5 * -along, -along, quality=DRAFT, bounces=2)
-    expected = np.array(REFLECTANCE) * ball_lux(2) / np.pi
-    np.testing.assert_allclose(seen.mean(axis=0), expected, rtol=0.02)
 
 
 def test_a_sky_is_whole_at_its_first_bounce(tmp_path):

@@ -32,7 +32,7 @@ def test_commands_name_scenes_and_lamps_that_are_there(monkeypatch, tmp_path, co
 
 
 def test_every_scene_has_its_command():
-    assert len(COMMANDS) == 4
+    assert len(COMMANDS) == 6
     for scene in ROOM.glob("*.toml"):
         assert scene.name == "camera.toml" or any(scene.name in command for command in COMMANDS)
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from andon.bake.tasks import write_bundle
 from andon.errors import InputError, MachineError
 from andon.files.limits import DEFAULT_LIMITS
 from andon.files.radiance_programs import package_folder, run_radiance
@@ -281,10 +282,7 @@ def test_what_is_included_stands_in_a_bake(tmp_path):
     text = b"void brightdata lines 4 noop stripes.dat . Px 0 0\n"
     text += b"lines plastic striped 0 0 5 1 1 1 0 0\n" + square
     bundle = radiance_bundle([], [], include=read_included([put(tmp_path, text)]))
-    folder = tmp_path / "bundle"
-    folder.mkdir()
-    for name, contents in bundle.items():
-        (folder / name).write_bytes(contents)
+    folder = write_bundle(tmp_path / "bundle", bundle)
     arguments, ray = ["-h", "-w", "-oLmv", "scene.oct"], b".5 1 -.5 0 -1 0\n"
     length, material, *_ = run_radiance("rtrace", arguments, ray, 20, cwd=folder).split()
     assert (float(length), material) == (1.0, b"striped")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from andon.bake.tasks import write_bundle
 from andon.files.radiance_programs import run_radiance
 from andon.surface.objects import joined
 from andon.transport.direct import reference
@@ -30,8 +31,7 @@ def luminance_of(bundle, origins, directions):
 
 def _traced(bundle, rays, options):
     with tempfile.TemporaryDirectory() as name:
-        for file, contents in bundle.items():
-            (Path(name) / file).write_bytes(contents)
+        write_bundle(Path(name), bundle)
         words = ["-h", "-w", "-fdd", "-n", "1", "-u-", *EXACT, *options, "scene.oct"]
         feed = np.ascontiguousarray(rays, float).tobytes()
         answer = run_radiance("rtrace", words, feed, 120, cwd=Path(name))

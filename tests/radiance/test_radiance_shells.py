@@ -156,12 +156,12 @@ def test_more_tiles_see_more_of_what_hides_a_lamp_near_by():
     """
     groups, lamps, bodies = _andon(frame=True)
     stands = [geometry for name, geometry in groups if name != "andon"]
-    points, normals = points_on(merged(*stands), 300)
+    points, normals = points_on(merged(*stands), 150)
     far = np.linalg.norm(points - bodies[0].geometry.positions.mean(axis=0), axis=1) > 0.4
     points, normals = points[far], normals[far]
     few, more, many = (
         lux_of(radiance_bundle(stands, lamps, bodies, tiles=tiles), points, normals)
-        for tiles in (64, 400, 1600)
+        for tiles in (64, 400, 1000)
     )
     everywhere = np.ones(len(points), bool)
     coarse, fine = errors(few, many, everywhere), errors(more, many, everywhere)

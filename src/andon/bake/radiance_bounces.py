@@ -17,14 +17,13 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import TracebackType
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.bake.journal import Result
-from andon.bake.radiance_points import VERSION, WORK, gathered, points_bundle, programs
+from andon.bake.radiance_points import VERSION, WORK, gathered, points_bundle
 from andon.bake.runner import Runner
 from andon.bake.task import Look
 from andon.bake.tasks import (
@@ -34,9 +33,11 @@ from andon.bake.tasks import (
     Workers,
     bundle_digest,
     run_tasks,
+    write_bundle,
 )
 from andon.engines.cubes_radiance import SeenPoints, light_scenes, seen_points
 from andon.engines.digest import digest
+from andon.files.radiance_programs import radiance_version
 from andon.harmonics import cube_directions
 from andon.scene.probes import Probes
 from andon.transport.baked.radiance.quality import QUALITIES
@@ -56,7 +57,7 @@ CHUNK = 256
 
 
 class RadianceBounces:
-    """The pass of a bake; a context manager, since Radiance reads its scenes from files.
+    """The pass of a bake.
 
     Parameters
     ----------
@@ -73,31 +74,21 @@ class RadianceBounces:
         self.quality, self.bounces = QUALITIES[quality], bounces
         self.scenes = light_scenes(small.setting, bounces)
         sums = {name: bundle_digest(files) for name, files in self.scenes.items()}
-        self.name = digest("radiance", VERSION, programs(), self.quality, bounces, small.size, sums)
-        self._temporary: TemporaryDirectory[str] | None = None
+        self.name = digest(
+            "radiance", VERSION, radiance_version(), self.quality, bounces, small.size, sums
+        )
         self._folders: dict[str, Path] = {}
         self._traced: dict[int, Path] = {}
 
-    def __enter__(self) -> Self:
-        self._temporary = TemporaryDirectory(prefix="andon-probes-")
-        for name, files in self.scenes.items():
-            folder = Path(self._temporary.name) / name
-            folder.mkdir()
-            for file, contents in files.items():
-                (folder / file).write_bytes(contents)
-            self._folders[name] = folder
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        if self._temporary is not None:
-            self._temporary.cleanup()
-            self._temporary = None
-            self._folders = {}
+    @contextmanager
+    def written(self) -> Generator[Self]:
+        """Itself, with Radiance's scenes in files meanwhile: `reflected` reads them."""
+        with TemporaryDirectory(prefix="andon-probes-") as folder:
+            self._folders = {
+                name: write_bundle(Path(folder) / name, files)
+                for name, files in self.scenes.items()
+            }
+            yield self
 
     def trace(
         self, indices: Sequence[int], folder: Path, workers: Workers, done: Callable[[], None], /
@@ -134,7 +125,12 @@ class RadianceBounces:
             f"probe {self.placed.names[index]}",
             WORK,
             {"points": points} | sums,
-            {"quality": self.quality.name, "bounces": self.bounces, "programs": programs()},
+            {
+                "quality": self.quality.name,
+                "options": digest(self.quality),
+                "bounces": self.bounces,
+                "radiance": radiance_version(),
+            },
             VERSION,
         )
 
@@ -189,7 +185,8 @@ def traced_light(
     def kept_as(index: int) -> str:
         return digest(traced.name, key(index))
 
-    with RadianceBounces(small, placed, probes.bounces_quality, probes.bounces) as traced:
+    bounces = RadianceBounces(small, placed, probes.bounces_quality, probes.bounces)
+    with bounces.written() as traced:
         if workers is not None:
             with _beside(runner.journal.folder) as folder:
                 lost = [index for index in own if not runner.journal.has(kept_as(index))]

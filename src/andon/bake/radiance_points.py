@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +11,11 @@ from numpy.typing import NDArray
 
 from andon.bake.tasks import Bundle
 from andon.engines.cubes_radiance import EMITTED, LAMPS, SeenPoints
+from andon.files.pictures import npy_bytes
 from andon.transport.baked.radiance.quality import QUALITIES, Quality
 from andon.transport.baked.radiance.trace import traced_illuminance
 
-__all__ = ["VERSION", "WORK", "gathered", "points_bundle", "programs", "traced_points"]
+__all__ = ["VERSION", "WORK", "gathered", "points_bundle", "traced_points"]
 
 Float = NDArray[np.float64]
 
@@ -70,22 +69,9 @@ def traced_points(inputs: Mapping[str, Path], settings: Mapping[str, Any], /) ->
         quality=QUALITIES[settings["quality"]],
         bounces=int(settings["bounces"]),
     )
-    stream = io.BytesIO()
-    np.lib.format.write_array(stream, lux, allow_pickle=False)
-    return stream.getvalue()
+    return npy_bytes(lux)
 
 
 def points_bundle(points: SeenPoints, /) -> Bundle:
     """The folder ``points`` of a task."""
-    stream = io.BytesIO()
-    both = np.concatenate([points.position, points.normal], axis=1)
-    np.lib.format.write_array(stream, both, allow_pickle=False)
-    return {POINTS: stream.getvalue()}
-
-
-def programs() -> str:
-    """The version of the wheel that Radiance comes with: another one may compute otherwise."""
-    try:
-        return version("pyradiance")
-    except PackageNotFoundError:
-        return "none"
+    return {POINTS: npy_bytes(np.concatenate([points.position, points.normal], axis=1))}

@@ -38,4 +38,4 @@ def seen_setting(scene: Scene, placed: Placed) -> CubeSetting | None:
             remedy="bake a scene without [capture] source, with a surface.mesh and the lamps of "
             "the photograph as [[lamp]]",
         )
-    return cube_setting(scene, prepare(scene, drawn=False, maps=False))
+    return cube_setting(scene, prepare(scene, drawn=False))

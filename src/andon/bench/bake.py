@@ -22,6 +22,7 @@ from andon.bake.tasks import (
     Workers,
     bundle_digest,
     run_tasks,
+    write_bundle,
 )
 from andon.bench.registry import BenchRow, Duel
 from andon.errors import MachineError
@@ -82,8 +83,6 @@ class _Bakes:
         self.folder = Path(mkdtemp(prefix="andon-bench-"))
         stack.callback(shutil.rmtree, self.folder, ignore_errors=True)
         self.world = self.folder / "world"
-        from andon.bake.tasks.inputs import write_bundle
-
         write_bundle(self.world, self.bundle)
 
     def loop(self) -> list[bytes]:

@@ -10,33 +10,32 @@ import typer
 from andon.cli.bar import Bar
 from andon.cli.console import Interrupted, note
 from andon.cli.durations import duration
+from andon.cli.workers import (
+    CertificateOption,
+    KeyOption,
+    SchedulerOption,
+    TrustedOption,
+    WorkersOption,
+    workers_of,
+)
 from andon.errors import InputError
 
 if TYPE_CHECKING:
     from andon.bake.maps import BakedMapsReport, MapsPlan
-    from andon.bake.tasks import Workers
     from andon.scene import Scene
 
-__all__ = ["maps", "qualities", "size"]
+__all__ = ["maps", "maps_folder", "qualities", "size"]
 
 QUALITIES = ("draft", "normal", "fine")
 
 
 def maps(
     scene: Annotated[Path, typer.Argument(help="Scene file (TOML) with a [baked] table.")],
-    workers: Annotated[
-        int | None,
-        typer.Option(min=1, help="Processes on this machine; default: one for each core."),
-    ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(metavar="tcp://HOST:PORT", help="Dask scheduler whose workers compute."),
-    ] = None,
-    tls_ca: Annotated[
-        Path | None, typer.Option(help="PEM of who is trusted, for a tls:// scheduler.")
-    ] = None,
-    tls_cert: Annotated[Path | None, typer.Option(help="PEM of this side's certificate.")] = None,
-    tls_key: Annotated[Path | None, typer.Option(help="PEM of this side's key.")] = None,
+    workers: WorkersOption = None,
+    scheduler: SchedulerOption = None,
+    tls_ca: TrustedOption = None,
+    tls_cert: CertificateOption = None,
+    tls_key: KeyOption = None,
     quality: Annotated[
         str | None,
         typer.Option(metavar="draft|normal|fine", help="Instead of the scene's baked.quality."),
@@ -72,7 +71,7 @@ def maps(
     from andon.scene import load_scene
 
     loaded = _with_quality(load_scene(scene), quality)
-    chosen = _workers(workers, scheduler, (tls_ca, tls_cert, tls_key))
+    chosen = workers_of(workers, scheduler, (tls_ca, tls_cert, tls_key))
     if dry_run:
         plan = plan_maps(loaded, trust=trust)
         _print_plan(plan, getattr(chosen, "count", 1))
@@ -91,6 +90,20 @@ def maps(
         note(difference)
     print(report.folder)
     note(f"look at them: andon bake show {report.folder}")
+
+
+def maps_folder(source: Path, /) -> Path:
+    """The folder itself, or the one that a scene's [baked] names."""
+    if source.suffix.lower() != ".toml" or source.is_dir():
+        return source
+    from andon.scene import load_scene
+
+    scene = load_scene(source)
+    if scene.baked is None:
+        raise InputError(
+            "needs a [baked] table", file=source, remedy='add [baked] with folder = "maps"'
+        )
+    return scene.path(scene.baked.folder, "baked.folder")
 
 
 def qualities() -> str:
@@ -118,28 +131,6 @@ def _with_quality(scene: Scene, quality: str | None) -> Scene:
     if scene.baked is None:
         return scene
     return scene.model_copy(update={"baked": scene.baked.model_copy(update={"quality": quality})})
-
-
-def _workers(
-    count: int | None, scheduler: str | None, tls: tuple[Path | None, Path | None, Path | None]
-) -> Workers:
-    from andon.bake.tasks import DaskWorkers, LocalWorkers
-
-    if scheduler is None:
-        if any(tls):
-            raise InputError("belongs to --scheduler", field="--tls-ca, --tls-cert, --tls-key")
-        return LocalWorkers(count)
-    if count is not None:
-        raise InputError(
-            "and --scheduler exclude each other", field="--workers", remedy="keep one of them"
-        )
-    if any(tls) and not all(tls):
-        raise InputError("belong together", field="--tls-ca, --tls-cert, --tls-key")
-    for path in tls:
-        if path is not None and not path.is_file():
-            raise InputError("must exist", file=path, field="--tls-ca, --tls-cert, --tls-key")
-    ca, cert, key = tls
-    return DaskWorkers(scheduler, tls_ca=ca, tls_cert=cert, tls_key=key)
 
 
 def _rows(plan: MapsPlan) -> list[tuple[str, str]]:

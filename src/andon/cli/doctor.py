@@ -58,15 +58,15 @@ def _exr() -> str | None:
 
 
 def _rtrace() -> str | None:
-    """Radiance, if the wheel that brings its programs is there with them."""
-    from importlib.util import find_spec
-    from pathlib import Path
+    """Radiance's programs, which the wheel may lack on some platforms."""
+    from andon.errors import MachineError
+    from andon.files.radiance_programs import package_folder, radiance_version
 
-    spec = find_spec("pyradiance")
-    if spec is None or spec.origin is None:
+    try:
+        program = package_folder() / "bin" / "rtrace"
+    except MachineError:
         return None
-    program = Path(spec.origin).parent / "bin" / "rtrace"
-    return f"pyradiance {_package('pyradiance')}" if program.exists() else None
+    return f"pyradiance {radiance_version()}" if program.exists() else None
 
 
 def findings() -> list[Finding]:
@@ -81,14 +81,24 @@ def findings() -> list[Finding]:
         Finding("rays (embreex)", _package("embreex"), "pip install embreex", "shadows, tracing"),
         Finding("EXR", _exr(), "pip install OpenEXR", "illuminance maps"),
         Finding("OpenCV", _package("opencv-python-headless"), "pip install andon", "lenses"),
-        Finding("SciPy", _package("scipy"), "pip install 'andon[probes]'", "baking light probes"),
+        Finding(
+            "SciPy", _package("scipy"), "pip install 'andon[probes]'", "andon bake, probes bake"
+        ),
         Finding(
             "Numba",
             _package("numba"),
             "pip install 'andon[probes]'",
             "fast lookups of many points (NumPy does without)",
         ),
-        Finding("Radiance", _rtrace(), "pip install 'andon[radiance]'", "andon verify, bench"),
+        Finding(
+            "Radiance", _rtrace(), "pip install 'andon[radiance]'", "andon bake, verify, bench"
+        ),
+        Finding(
+            "Dask",
+            _package("distributed"),
+            "pip install 'andon[cluster]'",
+            "bakes on many machines",
+        ),
         Finding("pygfx", _package("pygfx"), "pip install 'andon[bench]'", "andon bench"),
     ]
 

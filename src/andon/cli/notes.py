@@ -179,8 +179,8 @@ def _on_baked(frame: Frame) -> list[str]:
     if baked is None or baked.uncovered_share < NOTABLE_UNCOVERED:
         return []
     return [
-        f"{baked.uncovered_share:.1%} of the surface is seen by no illuminance map and gets no "
-        "baked light: --uncovered shows where; another [[baked.camera]] sees it"
+        f"{baked.uncovered_share:.1%} of the surface is seen by no illuminance map; but for rims "
+        "it gets no baked light: --uncovered shows where; another [[baked.camera]] sees it"
     ]
 
 

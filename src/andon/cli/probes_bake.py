@@ -10,11 +10,17 @@ import typer
 from andon.cli.bar import Bar
 from andon.cli.console import Interrupted, note
 from andon.cli.options import EngineOption
+from andon.cli.workers import (
+    CertificateOption,
+    KeyOption,
+    SchedulerOption,
+    TrustedOption,
+    workers_of,
+)
 from andon.errors import InputError
 
 if TYPE_CHECKING:
     from andon.bake import BakeReport, Written
-    from andon.bake.tasks import Workers
     from andon.scene import Scene
 
 __all__ = ["bake"]
@@ -42,12 +48,12 @@ def bake(
     ] = None,
     workers: Annotated[
         int | None,
-        typer.Option(help="Processes that trace bounces by Radiance; default: this one alone."),
+        typer.Option(min=1, help="Processes that trace bounces by Radiance; default: this one."),
     ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(help="Dask scheduler (tcp://host:8786) whose workers trace them instead."),
-    ] = None,
+    scheduler: SchedulerOption = None,
+    tls_ca: TrustedOption = None,
+    tls_cert: CertificateOption = None,
+    tls_key: KeyOption = None,
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Forget what an interrupted bake has left.")
     ] = False,
@@ -73,6 +79,8 @@ def bake(
     from andon.scene import load_scene
 
     loaded = _bounced_by(_in_state(load_scene(scene), state), bounces_by)
+    tls = tls_ca, tls_cert, tls_key
+    alone = workers is None and scheduler is None and not any(tls)
     try:
         with Bar("placing") as bar:
             written = bake_file(
@@ -81,7 +89,7 @@ def bake(
                 fresh=fresh,
                 replaces=replace,
                 progress=bar.show,
-                workers=_workers(workers, scheduler),
+                workers=None if alone else workers_of(workers, scheduler, tls),
             )
     except KeyboardInterrupt:
         raise Interrupted("interrupted; run it again and it goes on") from None
@@ -118,21 +126,6 @@ def _bounced_by(scene: Scene, how: str | None) -> Scene:
         )
     probes = scene.probes.model_copy(update={"bounces_by": how})
     return scene.model_copy(update={"probes": probes})
-
-
-def _workers(count: int | None, scheduler: str | None) -> Workers | None:
-    """Who traces; None: this process."""
-    from andon.bake.tasks import DaskWorkers, LocalWorkers
-
-    if count is not None and scheduler is not None:
-        raise InputError(
-            "excludes it", field="--workers", remedy="the scheduler knows its own; leave it out"
-        )
-    if count is not None and count < 1:
-        raise InputError(f"must be ≥ 1, got {count}", field="--workers")
-    if scheduler is not None:
-        return DaskWorkers(scheduler)
-    return None if count is None else LocalWorkers(count)
 
 
 def _notes(written: Written) -> list[str]:

@@ -8,12 +8,11 @@ Who takes it
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from shlex import quote
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,14 +21,15 @@ from andon.composite.model import Ambient
 from andon.engines.digest import digest
 from andon.engines.probes import SceneProbes, lampless_pixels, lit_pixels
 from andon.errors import InputError
-from andon.files.illuminance_maps import Manifest, read_geometry, read_lux, read_manifest
+from andon.files.illuminance_maps import MANIFEST, Manifest, Part, read_manifest, read_moment
 from andon.lamps import Lamp, resolve_lamps
 from andon.lamps.flickering import flicker_factor
 from andon.quantities import CameraFrame, Surface
 from andon.scene import Scene
 from andon.surface.model import SurfaceModel, states_reflectance
-from andon.transport.baked.model import BakedLight, BakedMoment, BakedSeen, IlluminanceMap, Part
+from andon.transport.baked.model import BakedLight, BakedMoment, BakedSeen
 from andon.transport.baked.reference import illuminance_at
+from andon.transport.baked.rims import with_rims
 
 __all__ = [
     "SceneBaked",
@@ -80,10 +80,12 @@ class SceneBaked:
         """What the maps give to a view's surface at one time."""
         asked = self.asked(surface, model)
         lux, covered = np.zeros((*surface.view.shape, 3)), np.zeros(surface.view.shape, bool)
-        lux[asked], covered[asked] = illuminance_at(
-            self.light, time_seconds, surface.position[asked], surface.normal[asked]
+        there = surface.valid
+        lux[there], covered[there] = illuminance_at(
+            self.light, time_seconds, surface.position[there], surface.normal[there]
         )
-        return BakedSeen(lux, covered, asked)
+        lux = with_rims(lux, covered, surface, self.light.depth_tolerance_m)
+        return BakedSeen(np.where(asked[..., None], lux, 0.0), covered & asked, asked)
 
 
 def undirected(scene: Scene, /) -> frozenset[str]:
@@ -135,7 +137,7 @@ def baked_of(
     if table is None or not table.lamps:
         return None, ()
     folder = scene.path(table.folder, "baked.folder")
-    if not (folder / "maps.json").exists():
+    if not (folder / MANIFEST).exists():
         raise InputError(
             f"there are no illuminance maps in {table.folder} yet",
             file=scene.file,
@@ -195,17 +197,15 @@ def _parts(scene: Scene, manifest: Manifest) -> dict[str, Part]:
     return parts
 
 
-def _loader(folder: Path, manifest: Manifest, names: tuple[str, ...]) -> Any:
+def _loader(
+    folder: Path, manifest: Manifest, names: tuple[str, ...]
+) -> Callable[[int], BakedMoment]:
     """Number of a moment → its maps, of which a few are kept."""
 
     @lru_cache(maxsize=KEPT_MOMENTS)
     def load(index: int) -> BakedMoment:
-        maps: list[IlluminanceMap] = []
-        for number, view in enumerate(manifest.cameras):
-            depth, normal = read_geometry(folder, manifest, number, index)
-            lux = {name: read_lux(folder, manifest, name, number, index) for name in names}
-            maps.append(IlluminanceMap(view, depth, normal, lux))
-        return BakedMoment(manifest.moments[index], tuple(maps))
+        maps = read_moment(folder, manifest, index, lamps=names)
+        return BakedMoment(manifest.moments[index], maps)
 
     return load
 

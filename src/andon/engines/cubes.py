@@ -142,7 +142,7 @@ def cube_setting(scene: Scene, prepared: Prepared, /) -> CubeSetting:
             remedy="give a depth or a mesh",
         )
     moment = prepared.at(0.0)
-    lamps = lamps_in_probes(scene, moment.direct_lamps)
+    lamps = lamps_in_probes(scene, moment.lamps)
     lighting = _lighting(scene, prepared, lamps)
     # A material whose light the photograph shows emits nothing beside it.
     real = model.real if lighting.photograph is None else _without_materials(model.real)

@@ -159,7 +159,7 @@ class GpuEngine:
         values = picture.lux.read()
         asked = own.asked(surface, self.prepared.surface)
         covered = asked & (values[..., 3] > 0.5)
-        return BakedSeen(np.where(covered[..., None], values[..., :3], 0.0), covered, asked)
+        return BakedSeen(np.where(asked[..., None], values[..., :3], 0.0), covered, asked)
 
     def glass_over(
         self, frame: CameraFrame, seen: GpuSurface, luminance: Texture, moment: Moment

@@ -142,12 +142,12 @@ class Prepared:
         return Casters(tuple(groups))
 
 
-def prepare(scene: Scene, /, *, drawn: bool = True, maps: bool = True) -> Prepared:
+def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
     """Reads all that `scene` names. Raises `InputError` for whatever does not fit.
 
-    With `drawn` False there are no frames where there is no photograph, and neither rig, white nor
-    a volume of probes are needed: for whoever makes light, as bakes do. Then no lamp flickers. With
-    `maps` False the folder of [baked] is not read: for whoever fills it.
+    With `drawn` False there are no frames where there is no photograph, and neither rig, white, a
+    volume of probes nor illuminance maps are needed: for whoever makes light, as bakes do. Then no
+    lamp flickers.
     """
     scene = scene if drawn else scene.steady()
     probes, notes = probes_of(scene) if drawn else (None, ())
@@ -160,7 +160,7 @@ def prepare(scene: Scene, /, *, drawn: bool = True, maps: bool = True) -> Prepar
         check_lamps(scene, lamps, surface, eye)
     baked, about_maps = (
         baked_of(scene, surface, lamps, frames, ambient, has_probes=probes is not None)
-        if maps
+        if drawn
         else (None, ())
     )
     check_counted_once(scene, probes, surface)

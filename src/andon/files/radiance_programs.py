@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
 
 from andon.errors import MachineError
 
-__all__ = ["package_folder", "run_radiance"]
+__all__ = ["package_folder", "radiance_version", "run_radiance"]
 
 _INSTALL_REMEDY = "install it with: pip install 'andon[radiance]'"
 
@@ -21,6 +22,14 @@ def package_folder() -> Path:
     if spec is None or spec.origin is None:
         raise MachineError("Radiance's programs are missing", remedy=_INSTALL_REMEDY)
     return Path(spec.origin).parent
+
+
+def radiance_version() -> str:
+    """Of the wheel, "none" without it: what another version computes may differ."""
+    try:
+        return metadata.version("pyradiance")
+    except metadata.PackageNotFoundError:
+        return "none"
 
 
 def run_radiance(

@@ -58,7 +58,11 @@ class LampTable(Table):
     )
     transport: Literal["direct", "baked", "direct+bounce"] = Field(
         default="direct",
-        description="How its light gets to surfaces; never counted twice.",
+        description="How its light gets to surfaces; never counted twice. direct: computed in each "
+        "frame, without what surfaces reflect of it. baked: all of it is in the maps of [baked]. "
+        "direct+bounce: computed in each frame, and what surfaces reflect of it is in the maps. "
+        "Body, highlights and glare are those of a direct lamp; what sticks to glass takes no "
+        "light of maps.",
     )
     in_probes: bool = Field(
         default=True,

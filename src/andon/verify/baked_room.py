@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.bake.maps import bake_maps
+from andon.bake.tasks import write_bundle
 from andon.files.pictures import write_exr, write_png
 from andon.lamps import Lamp, PolygonLamp, resolve_lamps
 from andon.pipeline import EngineName, Frame, render
@@ -132,8 +133,7 @@ def _traced(
     """(n, 3) lux at the pixels `which` (H, W), of lamps with all their tiles in each bounce."""
     with TemporaryDirectory() as folder:
         bundle = radiance_bundle([room()], lamps, tiles=TILES)
-        for name, contents in (dict(bundle) | {BOUNCE_OCTREE: bundle[OCTREE]}).items():
-            (Path(folder) / name).write_bytes(contents)
+        write_bundle(Path(folder), dict(bundle) | {BOUNCE_OCTREE: bundle[OCTREE]})
         seen = _seen()
         lux = traced_illuminance(
             Path(folder),

@@ -28,7 +28,9 @@ DELTA = 6 / 29
 def lab_of_linear(rgb: Float, /) -> Float:
     """(…, 3) L*a*b* of linear Rec.709 (…, 3), where 1, 1, 1 is the white."""
     t = rgb @ (XYZ_FROM_RGB / XYZ_FROM_RGB.sum(axis=1, keepdims=True)).T
-    f = np.where(t > DELTA**3, np.cbrt(t), t / (3 * DELTA**2) + 4 / 29)
+    line: Float = t / (3 * DELTA**2) + 4 / 29
+    root: Float = np.cbrt(t)
+    f = np.where(t > DELTA**3, root, line)
     x, y, z = np.moveaxis(f, -1, 0)
     return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
 

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.bake import bake_probes
+from andon.bake.tasks import write_bundle
 from andon.engines.cubes import cube_setting
 from andon.engines.cubes_radiance import LAMPS, light_scenes
 from andon.engines.prepared import prepare
@@ -149,15 +150,14 @@ def true_irradiance(scene: Scene, places: Float, normals: Float, bounces: int, /
 
     Light that was reflected 1 … `bounces` times, and what emits.
     """
-    setting = cube_setting(scene, prepare(scene, drawn=False, maps=False))
+    setting = cube_setting(scene, prepare(scene, drawn=False))
     points, facing = np.repeat(places, len(normals), 0), np.tile(normals, (len(places), 1))
     rays = np.concatenate([points, facing], axis=1)
     lux = np.zeros((len(rays), 3))
     # What surfaces show of `bounces` reflections reaches free air after one more of Radiance's.
     for light, files in light_scenes(setting, bounces + 1).items():
         with TemporaryDirectory() as name:
-            for file, contents in files.items():
-                (Path(name) / file).write_bytes(contents)
+            write_bundle(Path(name), files)
             if light == LAMPS:
                 lux += _traced(Path(name), rays, bounces) - _traced(Path(name), rays, 0)
             else:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from importlib.metadata import PackageNotFoundError, version
 
 from andon.bake.maps.bundles import Bundles
 from andon.bake.maps.plan import Planned
@@ -19,6 +18,7 @@ from andon.bake.maps.work import (
 )
 from andon.bake.tasks.model import Bundle, Task
 from andon.engines.digest import digest
+from andon.files.radiance_programs import radiance_version
 from andon.lamps import Lamp
 from andon.quantities import Photometry
 from andon.spaces import View
@@ -105,7 +105,7 @@ class _Maker:
     def __init__(self, planned: Planned, photometry: Photometry, bundles: Bundles) -> None:
         self.plan, self.world, self.include = planned.plan, planned.world, planned.include
         self.bundles, self.photometry = bundles, photometry
-        self.programs = _radiance_version()
+        self.programs = radiance_version()
         self.still = digest(list(self.world.still))
 
     def settings(self, lamp: str, view: View, direct_bounces: int) -> dict[str, object]:
@@ -125,7 +125,7 @@ class _Maker:
         bodies = digest(self.world.bodies(seconds))
         found: dict[str, tuple[str, int]] = {}
         for name, lamps in self.world.lamps(seconds).items():
-            source = digest("world", stands, bodies, name, lamps)
+            source = digest("world", stands, bodies, name, lamps, self.plan.quality.tiles)
             bundle = self.bundles.add(source, partial(self._world, name, seconds))
             found[name] = bundle, _direct_bounces(lamps)
         return found
@@ -138,7 +138,8 @@ class _Maker:
     def _world(self, name: str, seconds: float) -> Bundle:
         lamps = self.world.lamps(seconds)[name]
         parts, bodies = self.world.parts(seconds), self.world.bodies(seconds)
-        return radiance_bundle(parts, lamps, bodies, include=self.include)
+        tiles = self.plan.quality.tiles
+        return radiance_bundle(parts, lamps, bodies, include=self.include, detail_tiles=tiles)
 
     def _points(self, view: View, seconds: float) -> Bundle:
         return points_bundle(self.world.seen(view, seconds))
@@ -155,11 +156,3 @@ class _Maker:
 def _direct_bounces(lamps: tuple[Lamp, ...]) -> int:
     """Rays of the hemisphere find a sky of glow; every other lamp is aimed at."""
     return int(any(is_distant_glow(lamp) for lamp in lamps))
-
-
-def _radiance_version() -> str:
-    """Of the wheel whose programs are used; results of another one are computed again."""
-    try:
-        return version("pyradiance")
-    except PackageNotFoundError:
-        return "unknown"

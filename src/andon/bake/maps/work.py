@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.files.illuminance_maps import geometry_bytes, light_bytes
+from andon.files.pictures import npy_bytes
 from andon.quantities import Surface
 from andon.spaces import View, transform_points
 from andon.transport.baked.radiance.quality import QUALITIES
@@ -43,7 +44,7 @@ def points_bundle(surface: Surface, /) -> dict[str, bytes]:
     hole = ~(surface.valid & np.isfinite(surface.normal).all(axis=-1) & (surface.depth > 0))
     depth = np.where(hole, np.nan, surface.depth).astype("<f4")
     normal = np.where(hole[..., None], np.nan, surface.normal).astype("<f4")
-    return {"depth.npy": _npy(depth), "normal.npy": _npy(normal)}
+    return {"depth.npy": npy_bytes(depth), "normal.npy": npy_bytes(normal)}
 
 
 def view_settings(view: View, /) -> dict[str, Any]:
@@ -105,14 +106,6 @@ def quality_settings(name: str, /) -> dict[str, Any]:
     """All of a quality that results depend on, as settings of a task."""
     known = asdict(QUALITIES[name])
     return {key: value for key, value in known.items() if key not in MEASURED}
-
-
-def _npy(values: NDArray[Any]) -> bytes:
-    import io
-
-    stream = io.BytesIO()
-    np.save(stream, np.ascontiguousarray(values), allow_pickle=False)
-    return stream.getvalue()
 
 
 def _read(folder: Path, name: str) -> NDArray[Any]:

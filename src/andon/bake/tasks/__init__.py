@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 from andon.bake.tasks.cluster import DaskWorkers
+from andon.bake.tasks.inputs import write_bundle
 from andon.bake.tasks.local import LocalWorkers
 from andon.bake.tasks.lock import locked
 from andon.bake.tasks.model import Bundle, Task, Work, bundle_digest
@@ -32,4 +33,5 @@ __all__ = [
     "locked",
     "run_tasks",
     "tasks_status",
+    "write_bundle",
 ]

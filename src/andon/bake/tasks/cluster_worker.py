@@ -6,7 +6,6 @@ import shutil
 from collections import Counter
 from collections.abc import Collection, Generator, Mapping
 from contextlib import contextmanager
-from importlib import metadata
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -17,6 +16,7 @@ from andon.bake.tasks.inputs import Inputs
 from andon.bake.tasks.model import Bundle, Task
 from andon.bake.tasks.outcomes import Fault, Outcome, performed
 from andon.errors import MachineError
+from andon.files.radiance_programs import radiance_version
 
 __all__ = ["Folders", "held", "performed_there", "version"]
 
@@ -25,11 +25,7 @@ def version() -> str:
     """Of what computes on this machine: another one may give other bytes for the same key."""
     from andon import __version__
 
-    try:
-        radiance = metadata.version("pyradiance")
-    except metadata.PackageNotFoundError:
-        radiance = "none"
-    return f"Andon {__version__}, pyradiance {radiance}"
+    return f"Andon {__version__}, pyradiance {radiance_version()}"
 
 
 def held(bundle: Bundle, /) -> Bundle:

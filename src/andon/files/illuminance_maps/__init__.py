@@ -26,7 +26,7 @@ from andon.files.illuminance_maps.manifest import (
     read_manifest_file,
     write_manifest,
 )
-from andon.files.illuminance_maps.model import BakedLamp, Manifest, MapFile, StoredMap, same_rays
+from andon.files.illuminance_maps.model import BakedLamp, IlluminanceMap, Manifest, MapFile, Part
 from andon.files.illuminance_maps.pixels import (
     geometry_bytes,
     light_bytes,
@@ -39,9 +39,10 @@ __all__ = [
     "ILLUMINANCE_MAP_READERS",
     "MANIFEST",
     "BakedLamp",
+    "IlluminanceMap",
     "Manifest",
     "MapFile",
-    "StoredMap",
+    "Part",
     "geometry_bytes",
     "light_bytes",
     "map_file",
@@ -51,7 +52,6 @@ __all__ = [
     "read_lux",
     "read_manifest",
     "read_moment",
-    "same_rays",
     "write_manifest",
 ]
 

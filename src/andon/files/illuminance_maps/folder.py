@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.files.illuminance_maps.model import Manifest, MapFile, StoredMap
+from andon.files.illuminance_maps.model import IlluminanceMap, Manifest, MapFile
 from andon.files.illuminance_maps.pixels import read_geometry_picture, read_light_picture
 from andon.files.limits import DEFAULT_LIMITS, Limits
 from andon.files.paths import confined, open_bounded
@@ -81,17 +82,25 @@ def read_lux(
 
 
 def read_moment(
-    folder: str | Path, manifest: Manifest, moment: int, *, limits: Limits = DEFAULT_LIMITS
-) -> tuple[StoredMap, ...]:
-    """All maps of a moment, in the order of the cameras, each with the light of all lamps."""
-    found: list[StoredMap] = []
+    folder: str | Path,
+    manifest: Manifest,
+    moment: int,
+    *,
+    lamps: Iterable[str] | None = None,
+    limits: Limits = DEFAULT_LIMITS,
+) -> tuple[IlluminanceMap, ...]:
+    """All maps of a moment, in the order of the cameras, with the light of `lamps`; default: all.
+
+    Errors as `read_geometry`.
+    """
+    names = [lamp.name for lamp in manifest.lamps] if lamps is None else list(lamps)
+    found: list[IlluminanceMap] = []
     for camera, view in enumerate(manifest.cameras):
         depth, normal = read_geometry(folder, manifest, camera, moment, limits=limits)
         lux = {
-            lamp.name: read_lux(folder, manifest, lamp.name, camera, moment, limits=limits)
-            for lamp in manifest.lamps
+            name: read_lux(folder, manifest, name, camera, moment, limits=limits) for name in names
         }
-        found.append(StoredMap(view, depth, normal, lux))
+        found.append(IlluminanceMap(view, depth, normal, lux))
     return tuple(found)
 
 

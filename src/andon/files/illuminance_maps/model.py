@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,9 @@ from andon.errors import InputError
 from andon.quantities import Photometry
 from andon.spaces import View
 
-__all__ = ["MOST_BOUNCES", "BakedLamp", "Manifest", "MapFile", "Part", "StoredMap", "same_rays"]
+__all__ = ["MOST_BOUNCES", "BakedLamp", "IlluminanceMap", "Manifest", "MapFile", "Part"]
 
-Float32 = NDArray[np.float32]
+Floats = NDArray[np.floating[Any]]
 
 # What of a lamp's light is in its maps: all of it, or what surfaces reflect of it alone.
 Part = Literal["all", "bounce"]
@@ -130,31 +130,22 @@ class Manifest:
 
 
 @dataclass(frozen=True, eq=False)
-class StoredMap:
-    """What one camera sees at one moment, as it stands in the folder.
+class IlluminanceMap:
+    """Illuminance on the surface that one camera sees at one moment.
 
     Attributes
     ----------
-    view : where its pixels look.
-    depth_m : (h, w) float32, planar for a pinhole, else distance; NaN where there is no surface.
-    normal : (h, w, 3) float32, unit, world, towards the camera; NaN as `depth_m`.
-    lux : lamp's name → (h, w, 3) float32, lx, ≥ 0.
+    view : where its pixels look; never distorted.
+    depth_m : (h, w) float32, as `Surface.depth` (planar for a pinhole, else distance); NaN where
+        there is no surface.
+    normal : (h, w, 3) float32 unit, world, towards the camera; NaN as `depth_m`.
+    lux : lamp name → (h, w, 3) float32 in lx, ≥ 0; 0 where there is no surface.
     """
 
     view: View
-    depth_m: Float32
-    normal: Float32
-    lux: Mapping[str, Float32]
-
-
-def same_rays(one: View, other: View, /) -> bool:
-    """Whether each pixel of both looks the same way from the same place; names do not matter."""
-    keys = ("projection", "width", "height")
-    if one.projection != "latlong":
-        keys = (*keys, "fx", "fy", "cx", "cy")
-    return all(getattr(one, key) == getattr(other, key) for key in keys) and np.array_equal(
-        one.world_from_camera, other.world_from_camera
-    )
+    depth_m: Floats
+    normal: Floats
+    lux: Mapping[str, Floats]
 
 
 def _check_names(what: str, names: list[str]) -> None:

@@ -29,6 +29,7 @@ from andon.files.pictures.model import Picture
 from andon.files.pictures.png import PNG_SIGNATURE, decode_png
 from andon.files.pictures.rgbe import read_hdr
 from andon.files.pictures.write import (
+    npy_bytes,
     write_exr,
     write_hdr,
     write_jpeg,
@@ -42,6 +43,7 @@ __all__ = [
     "PICTURE_READERS",
     "Picture",
     "decode_picture",
+    "npy_bytes",
     "read_picture",
     "write_exr",
     "write_hdr",

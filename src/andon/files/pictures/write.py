@@ -15,7 +15,15 @@ from andon.files.pictures.exr import openexr
 from andon.files.pictures.primaries import REC709_XY
 from andon.quantities import Photometry
 
-__all__ = ["write_exr", "write_hdr", "write_jpeg", "write_npy", "write_picture", "write_png"]
+__all__ = [
+    "npy_bytes",
+    "write_exr",
+    "write_hdr",
+    "write_jpeg",
+    "write_npy",
+    "write_picture",
+    "write_png",
+]
 
 JPEG_QUALITY = 95  # with full chroma; below that block edges show in dark gradients
 
@@ -126,9 +134,14 @@ def write_npy(path: str | Path, values: NDArray[Any]) -> Path:
     """Write any numeric array as NPY."""
     if values.dtype.hasobject:
         raise InputError("an array of Python objects must not be written", file=path)
+    return write_bytes(path, npy_bytes(values))
+
+
+def npy_bytes(values: NDArray[Any]) -> bytes:
+    """A numeric array as the contents of an NPY file; the same bytes each time."""
     stream = io.BytesIO()
     np.save(stream, values, allow_pickle=False)
-    return write_bytes(path, stream.getvalue())
+    return stream.getvalue()
 
 
 def _check_array(values: NDArray[Any], path: str | Path, kinds: tuple[Any, ...]) -> None:

@@ -14,8 +14,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.files.illuminance_maps import IlluminanceMap, Part
 from andon.quantities import Photometry
-from andon.spaces import View
 
 __all__ = ["BakedLight", "BakedMoment", "BakedSeen", "IlluminanceMap", "Mode", "Part"]
 
@@ -23,28 +23,6 @@ Float = NDArray[np.floating[Any]]
 
 # How maps that see the same point are mixed.
 Mode = Literal["blend", "first_valid"]
-
-# What of a lamp's light is in its maps: all of it, or what surfaces reflect of it alone.
-Part = Literal["all", "bounce"]
-
-
-@dataclass(frozen=True, eq=False)
-class IlluminanceMap:
-    """Illuminance on the surface that one camera sees at one moment.
-
-    Attributes
-    ----------
-    view : where its pixels look; never distorted.
-    depth_m : (h, w) float32, as `Surface.depth` (planar for a pinhole, else distance); NaN where
-        there is no surface.
-    normal : (h, w, 3) float32 unit, world, towards the camera; NaN as `depth_m`.
-    lux : lamp name → (h, w, 3) float32 in lx, ≥ 0; 0 where there is no surface.
-    """
-
-    view: View
-    depth_m: Float
-    normal: Float
-    lux: Mapping[str, Float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +77,7 @@ class BakedSeen:
 
     Attributes
     ----------
-    lux : (H, W, 3) lx; 0 where no map is valid.
+    lux : (H, W, 3) lx; where no map is valid that of a rim (rims.py), or 0.
     covered : (H, W) a map is valid there.
     asked : (H, W) pixels that take baked light: surfaces, but no luminous bodies.
     """

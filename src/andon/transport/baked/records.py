@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.errors import MachineError
 from andon.gpu.layout import HostStruct
 from andon.spaces import View
 from andon.transport.baked.atlas import Atlas, Place
@@ -39,6 +40,7 @@ __all__ = [
     "STORED_MOST",
     "STRUCTS",
     "Pages",
+    "check_memory",
     "moments_text",
     "pack_map",
     "pack_pages",
@@ -52,6 +54,8 @@ MAX_MAPS = 64
 MOST_NAMED = 8
 # Layers of a texture, and numbers in mix.wgsl.
 MAX_LAMPS = 256
+# Of all pages: more than that few adapters have, and software ones take the machine's memory.
+MOST_BYTES = 4 << 30
 # The largest lux of a lamp is stored as this: below the largest half float, 2³¹ above the smallest
 # that has all its bits.
 STORED_MOST = 32768.0
@@ -107,6 +111,18 @@ class Pages:
     surface: NDArray[np.uint32]
     lamps: NDArray[np.float16]
     most_lux: NDArray[np.float64]
+
+
+def check_memory(atlas: Atlas, /, *, lamps: int, moments: int) -> None:
+    """Raises `MachineError` where pages of so many lamps and moments are larger than is sane."""
+    texels = atlas.width * atlas.height * atlas.pages
+    needed = moments * texels * (16 + 8 * lamps + 16)
+    if needed > MOST_BYTES:
+        raise MachineError(
+            f"the illuminance maps need {needed / 2**30:.1f} GiB on the adapter, more than "
+            f"{MOST_BYTES / 2**30:g}",
+            remedy="bake fewer or smaller maps (baked.map_size_px), or use --engine reference",
+        )
 
 
 def pack_map(view: View, place: Place, first_layer: int, /) -> NDArray[Any]:

@@ -27,6 +27,7 @@ from andon.transport.baked.records import (
     MAX_LAMPS,
     MAX_MAPS,
     STRUCTS,
+    check_memory,
     moments_text,
     settings_text,
 )
@@ -35,7 +36,7 @@ from andon.transport.baked.slots import Slot
 __all__ = ["BAKED_PICTURE", "FRAME_VARIANTS", "MOMENTS", "SETTINGS", "BakedBuffers", "BakedPicture"]
 
 _FOLDER = "andon/transport/baked"
-BAKED_PICTURE = f"{_FOLDER}/picture.wgsl"
+BAKED_PICTURE, BAKED_RIMS = f"{_FOLDER}/picture.wgsl", f"{_FOLDER}/rims.wgsl"
 # What stands in for none.wgsl in frames: baked light for all that lamps light, and beside probes
 # whose light has the same reflections in it.
 _TAKEN = {f"{_FOLDER}/none.wgsl": f"{_FOLDER}/picture_light.wgsl"}
@@ -70,6 +71,7 @@ class BakedBuffers:
             [view.shape for view in views], gpu.device.limits["max-texture-dimension-2d"]
         )
         most = min(2, len(light.moments))
+        check_memory(atlas, lamps=len(self.lamps), moments=most)
         settings = {SETTINGS: settings_text(views, len(self.lamps), light.mode)}
         self.variants = [
             {**settings, MOMENTS: moments_text(len(views), count)} for count in range(1, most + 1)
@@ -167,7 +169,8 @@ class BakedPicture:
 
     Attributes
     ----------
-    lux : rgba32float; illuminance in lux, and in alpha 1 where a map sees the surface, else 0.
+    lux : rgba32float; illuminance in lux, and in alpha 1 where a map sees the surface, else 0:
+        there the light is that of a rim (rims.py), or none.
     """
 
     def __init__(
@@ -175,22 +178,35 @@ class BakedPicture:
     ) -> None:
         gpu = buffers.gpu
         self.buffers, self.view = buffers, view
+        seen = make_texture(gpu, "rgba32float", view.width, view.height, label="baked light seen")
         self.lux = make_texture(gpu, "rgba32float", view.width, view.height, label="baked lux")
+        self._seen = seen.view
         self._drawn: int | None = None
         scene = {0: ("uint", gbuffer_view), 1: ("uniform", view_buffer)}
         group = bind_group(gpu, scene | buffers.resources, "baked")
+        structs, projection = gbuffer.STRUCTS | STRUCTS, gbuffer.projection_variant(view)
         self._passes = [
             FullscreenPass(
                 gpu,
                 BAKED_PICTURE,
                 "baked_picture",
-                [self.lux.format],
+                [seen.format],
                 [group],
-                structs=gbuffer.STRUCTS | STRUCTS,
-                variants=gbuffer.projection_variant(view) | variants,
+                structs=structs,
+                variants=projection | variants,
             )
             for variants in buffers.variants
         ]
+        beside = scene | {2: ("float", seen.view), 3: buffers.resources[4]}
+        self._rims = FullscreenPass(
+            gpu,
+            BAKED_RIMS,
+            "baked_rims",
+            [self.lux.format],
+            [bind_group(gpu, beside, "baked rims")],
+            structs=structs,
+            variants=projection,
+        )
 
     def encode(self, encoder: Any, time_seconds: float, *, changed: bool = False) -> bool:
         """Records the drawing at a time, if the light or, as `changed` says, the G-buffer is new.
@@ -200,6 +216,7 @@ class BakedPicture:
         self.buffers.encode(encoder, time_seconds)
         if self._drawn == self.buffers.version and not changed:
             return False
-        self._passes[self.buffers.moments - 1].encode(encoder, [self.lux.view])
+        self._passes[self.buffers.moments - 1].encode(encoder, [self._seen])
+        self._rims.encode(encoder, [self.lux.view])
         self._drawn = self.buffers.version
         return True

@@ -18,6 +18,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.bake.tasks import write_bundle
 from andon.lamps import PolygonLamp
 from andon.quantities import Geometry, Material, photometric
 from andon.rays import RayScene, face_normals
@@ -92,8 +93,7 @@ def _luxes(name: str) -> Float:
     else:
         quality, asked = QUALITIES[name], np.arange(len(place))
     with TemporaryDirectory(prefix="andon-verify-") as folder:
-        for file, contents in radiance_bundle(_parts(), [_panel()], tiles=TILES).items():
-            (Path(folder) / file).write_bytes(contents)
+        write_bundle(Path(folder), radiance_bundle(_parts(), [_panel()], tiles=TILES))
         lux = traced_illuminance(
             Path(folder), place[asked], facing[asked], quality=quality, bounces=BOUNCES
         )

@@ -23,6 +23,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.bake.tasks import write_bundle
 from andon.errors import InputError, MachineError
 from andon.files.radiance_programs import run_radiance
 from andon.lamps import Lamp
@@ -35,7 +36,6 @@ __all__ = [
     "RadianceScene",
     "Timing",
     "irradiance",
-    "time_picture",
     "time_view",
 ]
 
@@ -113,8 +113,7 @@ class RadianceScene:
         bundle = radiance_bundle(
             [self._geometry], self._lamps, tiles=self._tiles, time_limit_seconds=self._limit
         )
-        for name, contents in bundle.items():
-            (folder / name).write_bytes(contents)
+        write_bundle(folder, bundle)
 
     def irradiance(
         self,
@@ -204,24 +203,6 @@ def irradiance(
     """(n, 3) lux, see `RadianceScene.irradiance`; builds the octree anew at every call."""
     with RadianceScene(geometry, lamps) as scene:
         return scene.irradiance(points, normals, ambient_bounces=ambient_bounces, threads=threads)
-
-
-def time_picture(
-    scene: RadianceScene,
-    points: NDArray[Any],
-    normals: NDArray[Any],
-    /,
-    *,
-    repeats: int = 1,
-    threads: int | None = None,
-) -> Timing:
-    """How long Radiance takes for the direct light at (n, 3) points, one per pixel.
-
-    What each pixel sees is known beforehand; `time_view` has Radiance find it.
-    """
-    return Timing(
-        _timed(lambda: scene.irradiance(points, normals, threads=threads), repeats), len(points)
-    )
 
 
 def time_view(

@@ -44,7 +44,7 @@ def thinned(parts: Sequence[Tiles], most: int, /) -> list[Tiles]:
         if not own.sum() > 0:
             continue
         off = features[group] - (own @ features[group]) / own.sum()
-        chosen = group[int(np.argmin((off**2).sum(axis=1)))]
+        chosen = int(group[np.argmin((off**2).sum(axis=1))])
         found.append(Tiles(tiles[chosen][0][None], flux[group].sum(axis=0) / area[chosen]))
     return found
 

@@ -46,6 +46,7 @@ class Quality:
     neighbours : among these, from which each point gets its light.
     ambient_divisions : ``-ad``, rays of each hemisphere.
     alone_divisions : the same, of points that are not smoothed.
+    tiles : of each area lamp where direct light is corrected by many.
     direct_subdivision : ``-ds``, area lamps are cut down to this share of their distance.
     median_error, p95_error : relative, of all light in the maps of a furnished room, measured.
     seconds_per_100k_points : of the same maps on one core, for orientation.
@@ -56,6 +57,7 @@ class Quality:
     neighbours: int
     ambient_divisions: int
     alone_divisions: int
+    tiles: int
     direct_subdivision: float
     median_error: float
     p95_error: float
@@ -88,8 +90,8 @@ class Quality:
 
 QUALITIES: Mapping[str, Quality] = MappingProxyType(
     {
-        "draft": Quality("draft", 0.01, 24, 36, 256, 0.2, 0.065, 0.56, 13.0),
-        "normal": Quality("normal", 0.06, 48, 64, 1024, 0.2, 0.046, 0.32, 85.0),
-        "fine": Quality("fine", 0.15, 24, 256, 4096, 0.2, 0.02, 0.32, 620.0),
+        "draft": Quality("draft", 0.01, 24, 36, 256, 128, 0.2, 0.065, 0.56, 13.0),
+        "normal": Quality("normal", 0.04, 40, 36, 1024, 512, 0.2, 0.046, 0.32, 85.0),
+        "fine": Quality("fine", 0.15, 24, 256, 4096, 2048, 0.2, 0.02, 0.32, 620.0),
     }
 )

@@ -16,11 +16,13 @@ from andon.transport.baked.radiance.materials import MIX_CAL, MIX_FILE
 from andon.transport.baked.radiance.surfaces import surfaces_of, without_near
 from andon.transport.baked.radiance.textures import TEXTURE_CAL, TEXTURE_FILE
 
-__all__ = ["BOUNCE_OCTREE", "OCTREE", "radiance_bundle"]
+__all__ = ["BOUNCE_OCTREE", "DETAIL_OCTREE", "OCTREE", "radiance_bundle"]
 
 # What stands there, and the lamps; these again of few tiles, for the light that surfaces reflect.
 SURFACES, LAMPS, BOUNCE_LAMPS = "surfaces.rad", "lamps.rad", "bounce.rad"
 OCTREE, BOUNCE_OCTREE = "scene.oct", "bounce.oct"
+# And of many tiles, to correct the light of `OCTREE` by.
+DETAIL_LAMPS, DETAIL_OCTREE = "detail.rad", "detail.oct"
 # `oconv`: cells are cut until no more things are in them. With 6, its own default, the octree of a
 # room of 15,000 triangles has 121 MB, with 16 it has 2.6 MB, the same direct light byte for byte,
 # and `rtrace` takes a tenth less time; with 32 it is slower. A frozen octree (-f) would need no
@@ -44,12 +46,13 @@ def radiance_bundle(
     emission: bool = False,
     black: bool = False,
     tiles: int = TILES,
+    detail_tiles: int = 0,
     time_limit_seconds: float = LIMIT_SECONDS,
 ) -> dict[str, bytes]:
     """Name → contents of the files from which `rtrace`, run in their folder, computes.
 
     ``scene.oct`` has the lamps in all detail, ``bounce.oct`` of few tiles, for the light that
-    surfaces reflect.
+    surfaces reflect, and ``detail.oct``, if asked for, of many.
 
     Identical inputs give identical bytes.
 
@@ -65,6 +68,8 @@ def radiance_bundle(
     black : nothing reflects; with a sky, ``-ab 1`` is then its direct light.
     tiles : about how many flat pieces stand for each area lamp; the time of direct light grows
         with them. More where something stands close to a lamp.
+    detail_tiles : the same for ``detail.oct``, by which that light is corrected; without more
+        tiles than ``scene.oct`` has there is no such file.
     time_limit_seconds : for each run of a program.
 
     Raises
@@ -79,6 +84,10 @@ def radiance_bundle(
     there = standing(lamps, bodies, black=black)
     shining = lamps_text(there.lamps, tiles=tiles, opaque=there.opaque)
     few = lamps_text(there.lamps, tiles=tiles, opaque=there.opaque, most=BOUNCE_TILES)
+    many = lamps_text(there.lamps, tiles=max(tiles, detail_tiles), opaque=there.opaque)
+    octrees = {OCTREE: (LAMPS, shining.text), BOUNCE_OCTREE: (BOUNCE_LAMPS, few.text)}
+    if many.text != shining.text:
+        octrees[DETAIL_OCTREE] = (DETAIL_LAMPS, many.text)
     surfaces = surfaces_of(parts, emission=emission, black=black)
     files: dict[str, bytes] = {
         POINT_FILE: POINT_CAL.encode("ascii"),
@@ -87,19 +96,22 @@ def radiance_bundle(
         **shining.files,
         **surfaces.pictures,
         SURFACES: (surfaces.text + there.text).encode("ascii"),
-        LAMPS: shining.text.encode("ascii"),
-        BOUNCE_LAMPS: few.text.encode("ascii"),
+        **{name: text.encode("ascii") for name, text in octrees.values()},
     }
     more = [name for name in include if name.endswith(".rad")]
-    return _built(files | dict(include), surfaces.meshes, more, time_limit_seconds)
+    texts = {octree: [SURFACES, name, *more] for octree, (name, _) in octrees.items()}
+    return _built(files | dict(include), surfaces.meshes, texts, time_limit_seconds)
 
 
 def _built(
-    files: dict[str, bytes], meshes: Mapping[str, bytes], more: list[str], limit: float
+    files: dict[str, bytes],
+    meshes: Mapping[str, bytes],
+    texts: Mapping[str, list[str]],
+    limit: float,
 ) -> dict[str, bytes]:
     """The files, the meshes and the octrees that Radiance's programs make of them.
 
-    `more` : names of scene texts beside Andon's own.
+    `texts` : octree → names of the scene texts of which it is.
     """
     with TemporaryDirectory(prefix="andon-radiance-") as name:
         folder = Path(name)
@@ -109,7 +121,6 @@ def _built(
             (folder / f"{mesh}.obj").write_bytes(contents)
             run_radiance("obj2mesh", [f"{mesh}.obj", f"{mesh}.rtm"], b"", limit, cwd=folder)
             files[f"{mesh}.rtm"] = (folder / f"{mesh}.rtm").read_bytes()
-        for lamps, octree in ((LAMPS, OCTREE), (BOUNCE_LAMPS, BOUNCE_OCTREE)):
-            words = ["-w", *THINGS, SURFACES, lamps, *more]
-            files[octree] = run_radiance("oconv", words, b"", limit, cwd=folder)
+        for octree, names in texts.items():
+            files[octree] = run_radiance("oconv", ["-w", *THINGS, *names], b"", limit, cwd=folder)
     return files

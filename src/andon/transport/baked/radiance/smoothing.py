@@ -7,11 +7,18 @@ of its neighbours among these, weighted by how near they are. A linear fit has n
 changes evenly, as it does towards a corner; a mean would have one at every border. Neighbours that
 face elsewhere count as far away, so edges stay.
 
+Paper a few millimetres behind a lattice faces as its bars do. What tells them apart is how far one
+lies off the other's plane: of two points on any ball, (p₂ − p₁)·(n₁ + n₂) is 0, so that curved
+surfaces may count off-plane neighbours as strictly as flat ones. Where few neighbours are left,
+more points are traced: `lonely_points` finds them.
+
 Unlike `rtrace`'s own interpolation it does not depend on the order of points: no streaks.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, cast
 
@@ -20,7 +27,7 @@ from numpy.typing import NDArray
 
 from andon.errors import MachineError
 
-__all__ = ["chosen_points", "smoothed"]
+__all__ = ["chosen_points", "lonely_points", "smoothed"]
 
 Float = NDArray[np.float64]
 
@@ -29,7 +36,11 @@ NORMAL_M = 0.5
 # Of the mean squared distance: keeps slopes from following noise, or points on a line.
 RIDGE = 0.1
 # Of the neighbours' reach: farther off the tangent plane they count less than half.
-OFF_PLANE = 0.05
+OFF_PLANE = 0.01
+# What a neighbour off the plane still counts: where there is no other, it is better than nothing.
+LEAST = 1e-4
+# A point that has not as many neighbours, each counted by its weight, is lonely.
+ENOUGH = 6.0
 # Points of which neighbours are looked up at a time, for memory.
 BLOCK = 16384
 
@@ -57,6 +68,22 @@ def chosen_points(position: Float, normal: Float, count: int, /) -> NDArray[np.i
     return np.sort(np.array(chosen, np.intp))
 
 
+def lonely_points(
+    position: Float, normal: Float, chosen: NDArray[np.intp], /, *, neighbours: int, most: int
+) -> NDArray[np.intp]:
+    """Numbers of at most `most` more points, spread evenly where the chosen ones are too few.
+
+    Thin bars, rims, and what is seen through gaps. Parameters as of `smoothed`.
+    """
+    lonely: list[NDArray[np.intp]] = []
+    for start, near in _neighbours(position, normal, chosen, neighbours):
+        weight = near.weight
+        count = weight.sum(axis=1) ** 2 / (weight**2).sum(axis=1)
+        lonely.append(start + np.flatnonzero(count < ENOUGH))
+    numbers = np.setdiff1d(np.concatenate(lonely), chosen)
+    return numbers[chosen_points(position[numbers], normal[numbers], min(most, len(numbers)))]
+
+
 def smoothed(
     position: Float,
     normal: Float,
@@ -66,7 +93,7 @@ def smoothed(
     *,
     neighbours: int,
 ) -> Float:
-    """(n, 3) lux at all points from those `lux` (k, 3) of the `chosen` (k,).
+    """(n, c) lux at all points from those `lux` (k, c) of the `chosen` (k,).
 
     Parameters
     ----------
@@ -75,28 +102,52 @@ def smoothed(
 
     Raises `MachineError` where SciPy, which finds neighbours, is missing.
     """
-    places = _places(position, normal)
-    near = min(neighbours, len(chosen))
-    tree = _tree(places[chosen])
-    result = np.empty((len(places), 3))
-    for start in range(0, len(places), BLOCK):
-        block = slice(start, start + BLOCK)
-        distance, index = tree.query(places[block], k=range(1, near + 1))
-        offset = np.asarray(position[chosen][index] - position[block, None], np.float64)
-        result[block] = _fit(offset, normal[block], distance, lux[index])
+    result = np.empty((len(position), lux.shape[1]))
+    for start, near in _neighbours(position, normal, chosen, neighbours):
+        here = slice(start, start + len(near.weight))
+        result[here] = _fit(near, normal[here], lux[near.index])
     return result
 
 
-def _fit(offset: Float, normal: Float, distance: Float, lux: Float) -> Float:
-    """(n, 3) value at offset 0 of linear fits to lux (n, k, 3) at offsets (n, k, 3)."""
+@dataclass(frozen=True, eq=False)
+class _Near:
+    """Of n points, k neighbours each: which of the chosen, how far away (n, k, 3), and weights."""
+
+    index: NDArray[np.intp]
+    offset: Float
+    weight: Float
+
+
+def _neighbours(
+    position: Float, normal: Float, chosen: NDArray[np.intp], neighbours: int
+) -> Iterator[tuple[int, _Near]]:
+    """Block by block of all points: the number of the first, and their neighbours."""
+    places = _places(position, normal)
+    tree = _tree(places[chosen])
+    nearest = range(1, min(neighbours, len(chosen)) + 1)
+    for start in range(0, len(places), BLOCK):
+        here = slice(start, start + BLOCK)
+        distance, index = tree.query(places[here], k=nearest)
+        offset = np.asarray(position[chosen][index] - position[here, None], np.float64)
+        weight = _weights(offset, distance, normal[here], normal[chosen][index])
+        yield start, _Near(index, offset, weight)
+
+
+def _weights(offset: Float, distance: Float, normal: Float, theirs: Float) -> Float:
+    """(n, k) of neighbours at offsets (n, k, 3) that face `theirs`: near ones, in one surface."""
     reach = distance[:, -1:] * 1.001 + 1e-9
-    weight = (1 - (distance / reach) ** 2) ** 2
-    # What lies before or behind the tangent plane is another surface: a panel behind its frame.
-    off = np.abs(np.einsum("nki,ni->nk", offset, normal))
-    weight = weight / (1 + (off / (OFF_PLANE * reach)) ** 4) + 1e-6
-    weight = weight / weight.sum(axis=1, keepdims=True)
+    close = (1 - (distance / reach) ** 2) ** 2
+    # What lies before or behind the surface is another one: a panel behind its frame.
+    off = np.einsum("nki,nki->nk", offset, normal[:, None] + theirs) / 2
+    along = np.clip(np.einsum("nki,ni->nk", theirs, normal), 0, 1)
+    return close * (along / (1 + (off / (OFF_PLANE * reach)) ** 4) + LEAST) + 1e-9
+
+
+def _fit(near: _Near, normal: Float, lux: Float) -> Float:
+    """(n, c) value at offset 0 of linear fits to lux (n, k, c)."""
+    weight = near.weight / near.weight.sum(axis=1, keepdims=True)
     across = _across(normal)
-    flat = np.stack([np.einsum("nki,ni->nk", offset, axis) for axis in across], axis=-1)
+    flat = np.stack([np.einsum("nki,ni->nk", near.offset, axis) for axis in across], axis=-1)
     middle = np.einsum("nk,nki->ni", weight, flat)
     mean = np.einsum("nk,nkc->nc", weight, lux)
     from_middle = flat - middle[:, None]

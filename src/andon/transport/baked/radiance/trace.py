@@ -1,10 +1,14 @@
-"""Illuminance and luminance by `rtrace`, the same to the last bit in every run.
+"""Illuminance by `rtrace`, the same to the last bit in every run.
 
 ::
 
-    all points ──scene.oct, -ab 0──────────────────────▶ straight from lamps ──┐
-                                                                               + ──▶ lux
+    all points ──scene.oct, -ab 0──────────────────▶ straight from lamps ──┐
+                                                                           × ──┐
+    some points ──detail.oct and scene.oct, -ab 0──▶ smoothed, quotient ───┘   + ──▶ lux
     some points ──bounce.oct, -ab N less -ab 0──▶ reflected ──smoothed to all──┘
+
+How much of an area lamp a thing close to it takes is seen by thousands of tiles alone, and is about
+the same for neighbours: it is asked at some points. The edges of shadows are of every point.
 
 W/m² of each channel times 179 are lux. The program runs in the folder, so that the scene's files
 have names without a path. One process computes in one order, and random numbers begin alike; what
@@ -23,17 +27,22 @@ from numpy.typing import NDArray
 from andon.errors import InputError, MachineError
 from andon.files.radiance_programs import run_radiance
 from andon.transport.baked.model import Part
-from andon.transport.baked.radiance.quality import FEW_POINTS, Quality
-from andon.transport.baked.radiance.smoothing import chosen_points, smoothed
+from andon.transport.baked.radiance.quality import Quality
+from andon.transport.baked.radiance.smoothing import chosen_points, lonely_points, smoothed
+from andon.transport.baked.radiance.text import LUMENS_PER_WATT
 
-__all__ = ["traced_illuminance", "traced_luminance"]
+__all__ = ["traced_illuminance"]
 
 Float = NDArray[np.float64]
 
-# What `radiance_bundle` makes: lamps in all detail, and of few tiles for what is reflected.
-OCTREE, BOUNCES = "scene.oct", "bounce.oct"
-# Radiance's own luminous efficacy, lm/W, applied channel by channel.
-LUMENS_PER_WATT = 179.0
+# What `radiance_bundle` makes: lamps, those of few tiles for what is reflected, and of
+# many, if it was asked for them.
+OCTREE, BOUNCES, DETAIL = "scene.oct", "bounce.oct", "detail.oct"
+# Many tiles give no more than this times the light of few; where these see next to nothing, their
+# quotient is chance.
+MOST = 2.0
+# Of the points that are traced, as many may be added where neighbours are too few.
+MORE = 0.3
 # What is the same in every quality. Every lamp is tested (-dt, -dc), at its centre (-dj); there are
 # no mirrors, so no virtual lamps (-dr). One process, and random numbers that begin alike: with -u+,
 # the default, the clock chooses them.
@@ -72,47 +81,51 @@ def traced_illuminance(
     """
     places, facing = _triples(position, "position"), _directions(normal, "normal")
     _check(places, facing, "normal", bounces)
-    rays, count = np.concatenate([places, facing], axis=1), quality.traced(len(places))
-    chosen = chosen_points(places, facing, count)
-    alone = count < FEW_POINTS
+    rays = np.concatenate([places, facing], axis=1)
+    chosen = _chosen(places, facing, quality)
+    alone = len(chosen) == len(places)
 
     def ask(octree: str, asked: Float, most: int) -> Float:
         words = ["-I", *FIXED, *quality.options(most, alone=alone)]
         return _traced(folder, words, asked, time_limit_seconds, octree)
 
+    def everywhere(found: Float) -> Float:
+        if alone:
+            return found
+        return smoothed(places, facing, chosen, found, neighbours=quality.neighbours)
+
+    result = np.zeros_like(places)
     # What lamps give by themselves, if `rtrace` finds them everywhere without chance.
-    has_exact = part == "all" and not direct_bounces
-    result = ask(OCTREE, rays, 0) if has_exact else np.zeros_like(places)
+    if part == "all" and not direct_bounces:
+        detailed = (folder / DETAIL).exists()
+        result = ask(DETAIL if detailed and alone else OCTREE, rays, 0)
+        if detailed and not alone:
+            both = np.concatenate([ask(DETAIL, rays[chosen], 0), result[chosen]], axis=1)
+            result = result * _quotient(everywhere(both))
     if bounces or (direct_bounces and part == "all"):
         found = ask(BOUNCES, rays[chosen], bounces + direct_bounces)
         if part == "bounce" or not direct_bounces:
             found -= ask(BOUNCES, rays[chosen], direct_bounces)
-        found = np.maximum(found, 0)  # a difference's rounding
-        if not alone:
-            found = smoothed(places, facing, chosen, found, neighbours=quality.neighbours)
-        result = result + found
+        result = result + everywhere(np.maximum(found, 0))  # a difference's rounding
     return result.astype(np.float32)
 
 
-def traced_luminance(
-    folder: Path,
-    origins: NDArray[Any],
-    directions: NDArray[Any],
-    /,
-    *,
-    quality: Quality,
-    bounces: int,
-    time_limit_seconds: float = 3600.0,
-) -> NDArray[np.float32]:
-    """(n, 3) cd/m² that arrive at `origins` (n, 3) metres from `directions` (n, 3), lamps included.
+def _chosen(places: Float, facing: Float, quality: Quality) -> NDArray[np.intp]:
+    """Where reflected light is traced: evenly, and more where surfaces are thin."""
+    count = quality.traced(len(places))
+    first = chosen_points(places, facing, count)
+    if len(first) == len(places):
+        return first
+    more = lonely_points(
+        places, facing, first, neighbours=quality.neighbours, most=round(MORE * count)
+    )
+    return np.union1d(first, more)
 
-    Parameters and errors as in `traced_illuminance`.
-    """
-    places, looking = _triples(origins, "origins"), _directions(directions, "directions")
-    _check(places, looking, "directions", bounces)
-    rays = np.concatenate([places, looking], axis=1)
-    words = [*FIXED, *quality.options(bounces, alone=True)]
-    return _traced(folder, words, rays, time_limit_seconds, OCTREE).astype(np.float32)
+
+def _quotient(both: Float) -> Float:
+    """(n, 3) of the first three columns and the last; 1 where there is no light."""
+    many, few = both[:, :3], both[:, 3:]
+    return np.clip(np.divide(many, few, out=np.ones_like(few), where=few > 0), 0, MOST)
 
 
 def _triples(values: NDArray[Any], field: str) -> Float:

@@ -141,6 +141,23 @@ def test_a_moving_object_is_baked_at_each_moment(tmp_path):
         assert not any(mask.any() for mask in others), "and nowhere else"
 
 
+def test_of_a_film_the_disk_holds_what_one_task_reads(tmp_path):
+    """Three moments, two lamps, two cameras: six lamps' worlds, of which one is there at a time."""
+    tables = moving_tables(tmp_path) | {"surface": {"mesh": "room.glb"}}
+    tables["baked"] |= {"camera": CAMERAS, "bounces": 0}
+    inputs, worlds, seen = tmp_path / "maps" / "inputs", [], []
+
+    def look(done, of, what, left):
+        folders = list(inputs.iterdir()) if inputs.exists() else []
+        worlds.append(sum((folder / "scene.oct").exists() for folder in folders))
+        seen.append(len(folders) - worlds[-1])
+
+    _, done = bake(room_scene(tmp_path, **tables), progress=look)
+    assert len(done) == 3 * 2 * (1 + 2)
+    assert max(worlds) == 1
+    assert max(seen) == 2, "what both cameras see of one moment"
+
+
 def test_what_does_not_change_is_one_file_for_all_moments(tmp_path):
     tables = moving_tables(tmp_path, casts_shadow=False)
     tables["baked"]["camera"] = [camera((0, 0.5, -2.2), (0, -0.5, -9))]

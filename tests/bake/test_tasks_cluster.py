@@ -1,5 +1,6 @@
 """A cluster's workers: what they give, what happens when they go, and when the scheduler goes."""
 
+import gc
 import os
 import re
 import shutil
@@ -215,6 +216,31 @@ def test_nobody_at_the_address_is_said_soon(tmp_path):
                 tasks(1), BUNDLES, Store(tmp_path / "maps"),
                 workers=DaskWorkers(address, connect_seconds=0.5),
             )  # fmt: skip
+
+
+def test_clients_that_were_lost_end_before_another_starts(tmp_path, monkeypatch):
+    ended, asked = [], []
+
+    class Lost:
+        def __init__(self):
+            self.itself = self
+
+        def __del__(self):
+            ended.append(self)
+
+    def client(*_, **__):
+        asked.append(len(ended))
+        raise OSError("nobody")
+
+    monkeypatch.setattr(distributed, "Client", client)
+    gc.disable()
+    try:
+        Lost()
+        with pytest.raises(MachineError, match="no Dask scheduler at"):
+            run_tasks(tasks(1), BUNDLES, Store(tmp_path / "maps"), workers=DaskWorkers("tcp://a:1"))
+    finally:
+        gc.enable()
+    assert asked == [1]
 
 
 def test_without_dask_its_package_is_named(tmp_path, monkeypatch):

@@ -1,11 +1,20 @@
 """Maps of known light, projected into other views, against the closed form."""
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
 from andon.surface.objects import joined
 from andon.surface.reference import trace
-from andon.transport.baked import BakedLight, BakedMoment, baked_illuminance, illuminance_at
+from andon.transport.baked import (
+    BakedLight,
+    BakedMoment,
+    baked_illuminance,
+    illuminance_at,
+    texels,
+)
 from baked.scenes import baked_map, candles, fisheye, latlong, pinhole, still
 from worlds import ball, block, sheet
 
@@ -355,3 +364,22 @@ def test_points_that_are_nowhere_or_at_the_camera():
         lux, covered = asked(light, position, np.tile(UP, (5, 1)))
         assert covered.tolist() == [False, False, False, False, True]
         np.testing.assert_allclose(lux[4], 7)
+
+
+# ── what is kept ────────────────────────────────────────────────────────────────────────────────
+
+
+def test_texels_are_made_once_and_go_with_their_map(monkeypatch):
+    """However many maps there are: frames between two moments ask for those of both in turn."""
+    made, make = [], texels.texels_of
+    monkeypatch.setattr(texels, "texels_of", lambda *args: made.append(1) or make(*args))
+    view = pinhole(4, 3, (0, 2, 0.1), (0, 0, 0))
+    light = still(*(baked_map(FLOOR, view) for _ in range(40)))
+    for _ in range(2):
+        asked(light, *floor_points([0.0, 0.1], 0.0))
+    assert len(made) == 40
+    kept = weakref.ref(texels.kept_texels(light.load(0).maps[0], light.depth_tolerance_m))
+    assert len(made) == 40
+    del light
+    gc.collect()
+    assert kept() is None

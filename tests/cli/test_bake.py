@@ -157,7 +157,7 @@ def test_help_tells_errors_and_times_of_the_qualities(capfd, monkeypatch):
         (["room.toml", "--scheduler", "tls://h:1", "--tls-ca", "a.pem"], "belong together"),
         (["none.toml"], "none.toml"),
         (["plain.toml"], "plain.toml: baked: is missing: nothing says what to bake; add [baked]"),
-        (["status", "plain.toml"], "baked: is missing"),
+        (["status", "plain.toml"], "needs a [baked] table"),
         (["staus"], "there is no command 'staus' and no scene file of that name; perhaps andon ba"),
     ],
 )

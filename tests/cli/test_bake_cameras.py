@@ -7,6 +7,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
+from andon.bake.maps import plan_maps
 from andon.cli.bake_cameras import camera_tables, cameras
 from andon.errors import InputError
 from andon.files.pictures import read_picture
@@ -78,6 +79,32 @@ def same_view(a, b):
     np.testing.assert_allclose(a.world_from_camera, b.world_from_camera, atol=1e-6)
     if a.projection != "latlong":
         assert (a.fx, a.fy, a.cx, a.cy) == (b.fx, b.fy, b.cx, b.cy)
+
+
+def test_they_are_those_of_the_bake(folder):
+    """Of a scene in which something moves as well: it is seen where it is at the beginning."""
+    write_obj(folder / "screen.obj", block((0.1, 2.6, 2.6), (0, 0, 0)))
+    moving = """lamps = ["lamp"]
+
+[[lamp]]
+kind = "point"
+name = "lamp"
+position = [-1.2, 2.0, -1.2]
+intensity_cd = 100.0
+transport = "baked"
+
+[[object]]
+mesh = "screen.obj"
+key = [{ time_seconds = 0, position = [1.2, 1.4, 0.0] },
+       { time_seconds = 1, position = [1.2, 1.4, 0.5] }]
+"""
+    (folder / "room.toml").write_text(SCENE + moving)
+    scene = load_scene(folder / "room.toml")
+    tables = tomllib.loads(run("room.toml", "--toml").stdout)["baked"]["camera"]
+    planned = plan_maps(scene).views
+    assert len(tables) == len(planned) > 1
+    for table, view in zip(tables, planned, strict=True):
+        same_view(Camera.model_validate(table, strict=False).view("map"), view)
 
 
 def test_every_kind_of_view_survives_its_table():

@@ -34,7 +34,7 @@ def painted():
 def whole():
     ball = SphereLamp("ball", LIGHT, np.array([-1, 1, 0.5]), 0.1)
     lamps = [PointLamp("p", AT, LIGHT), LAMPS["type C"], LAMPS["spot"]]
-    include = {"include0.rad": b"void plastic red 0 0 5 .5 0 0 0 0\nred sphere s 0 0 4 0 1 0 .1\n"}
+    include = {"more.rad": b"void plastic red 0 0 5 .5 0 0 0 0\nred sphere s 0 0 4 0 1 0 .1\n"}
     return radiance_bundle([open_room(), painted()], lamps, [body_of(ball)], include=include)
 
 

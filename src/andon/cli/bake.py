@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from andon.bake.maps import BakedMapsReport, MapsPlan
     from andon.scene import Scene
 
-__all__ = ["maps", "qualities", "size"]
+__all__ = ["maps", "maps_folder", "qualities", "size"]
 
 QUALITIES = ("draft", "normal", "fine")
 
@@ -90,6 +90,20 @@ def maps(
         note(difference)
     print(report.folder)
     note(f"look at them: andon bake show {report.folder}")
+
+
+def maps_folder(source: Path, /) -> Path:
+    """The folder itself, or the one that a scene's [baked] names."""
+    if source.suffix.lower() != ".toml" or source.is_dir():
+        return source
+    from andon.scene import load_scene
+
+    scene = load_scene(source)
+    if scene.baked is None:
+        raise InputError(
+            "needs a [baked] table", file=source, remedy='add [baked] with folder = "maps"'
+        )
+    return scene.path(scene.baked.folder, "baked.folder")
 
 
 def qualities() -> str:

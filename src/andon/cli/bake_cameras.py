@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from andon.quantities import Geometry
     from andon.scene import Scene
     from andon.spaces import View
     from andon.transport.baked.placement import Suggested
@@ -40,12 +39,15 @@ def cameras(
 
         andon bake cameras scene.toml --toml >> scene.toml
     """
+    from andon.bake.maps import searched_cameras
     from andon.scene import load_scene
 
     if out is not None:
         check_writable(out, (".png",), "--out")
     loaded = load_scene(scene)
-    geometry, suggested = _suggested(loaded)
+    geometry, suggested = searched_cameras(loaded)
+    if loaded.baked is not None and loaded.baked.camera:
+        note("the scene states [[baked.camera]]: these are those that would be found without")
     if toml:
         print(_tables(suggested))
     else:
@@ -57,47 +59,6 @@ def cameras(
 
         write_png(out, plan_picture(geometry, suggested))
         note(f"{out} is written")
-
-
-def _suggested(scene: Scene) -> tuple[Geometry, Suggested]:
-    from andon.bake.to_file import scene_geometry
-    from andon.errors import InputError
-    from andon.transport.baked.placement import suggested_views
-
-    if scene.baked is None:
-        raise InputError(
-            "needs a [baked] table", file=scene.file, remedy='add [baked] with folder = "maps"'
-        )
-    if scene.baked.camera:
-        note("the scene states [[baked.camera]]: these are those that would be found without")
-    geometry = scene_geometry(scene)
-    try:
-        suggested = suggested_views(
-            geometry,
-            _frame_views(scene),
-            coverage=scene.baked.coverage,
-            most_cameras=scene.baked.most_cameras,
-            map_size_px=scene.baked.map_size_px,
-            seed=scene.scene.seed,
-            one_sided=scene.surface is not None and scene.surface.mesh is None,
-        )
-    except InputError as error:
-        raise InputError(
-            error.rule, file=scene.file, field=error.field, remedy=error.remedy
-        ) from error
-    return geometry, suggested
-
-
-def _frame_views(scene: Scene) -> list[View]:
-    """The cameras of the frame; none where the scene has no rig that stands still."""
-    from andon.engines.reading import read_pictures, view_names_of, view_of
-
-    if scene.rig is None or not scene.rig.cameras or scene.rig.trajectory is not None:
-        return []
-    if scene.capture is None or scene.capture.source is None:
-        return [view_of(scene, name, None) for name in view_names_of(scene)]
-    pictures = read_pictures(scene)
-    return [view_of(scene, name, picture.shape) for name, picture in pictures.items()]
 
 
 def _print(suggested: Suggested) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from andon.cli.bake import maps_folder
 from andon.cli.console import check_writable, note, printable
 from andon.errors import InputError, nearest_name
 
@@ -69,7 +70,7 @@ def show(
     from andon.files.illuminance_maps import read_manifest
     from andon.files.pictures import write_png
 
-    folder = _folder(source)
+    folder = maps_folder(source)
     manifest = read_manifest(folder)
     names = _lamps(manifest, lamp, folder)
     moment = _moment(manifest, time)
@@ -77,18 +78,6 @@ def show(
     write_png(out, _sheet(tiles, manifest.photometry, geometry))
     _say(manifest, names, moment)
     print(out)
-
-
-def _folder(source: Path) -> Path:
-    """The folder itself, or the one that the scene names."""
-    if source.suffix.lower() != ".toml" or source.is_dir():
-        return source
-    from andon.scene import load_scene
-
-    scene = load_scene(source)
-    if scene.baked is None:
-        raise InputError("needs a [baked] table", file=source, remedy="add baked.folder")
-    return scene.path(scene.baked.folder, "baked.folder")
 
 
 def _lamps(manifest: Manifest, lamp: str | None, folder: Path) -> tuple[str, ...]:

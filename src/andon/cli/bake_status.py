@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from andon.cli.bake import size
+from andon.cli.bake import maps_folder, size
 from andon.cli.console import printable
 from andon.cli.durations import duration
-from andon.errors import InputError
 
 if TYPE_CHECKING:
     from andon.bake.tasks import TasksStatus
@@ -34,28 +33,13 @@ def status(
     """
     from andon.bake.tasks import tasks_status
 
-    folder = place if place.is_dir() else _folder_of(place)
+    folder = maps_folder(place)
     found = tasks_status(folder)
     if found is None:
         print(f"{folder}: no bake has begun")
         return
     for line in _lines(found, (folder / "maps.json").exists()):
         print(line)
-
-
-def _folder_of(path: Path) -> Path:
-    """The folder that a scene's [baked] names."""
-    from andon.scene import load_scene
-
-    scene = load_scene(path)
-    if scene.baked is None:
-        raise InputError(
-            "is missing: the scene bakes nothing",
-            file=path,
-            field="baked",
-            remedy='add [baked] with folder = "maps" and lamps = ["…"]',
-        )
-    return scene.path(scene.baked.folder, "baked.folder")
 
 
 def _lines(status: TasksStatus, has_maps: bool) -> list[str]:

@@ -58,15 +58,15 @@ def _exr() -> str | None:
 
 
 def _rtrace() -> str | None:
-    """Radiance, if the wheel that brings its programs is there with them."""
-    from importlib.util import find_spec
-    from pathlib import Path
+    """Radiance's programs, which the wheel may lack on some platforms."""
+    from andon.errors import MachineError
+    from andon.files.radiance_programs import package_folder, radiance_version
 
-    spec = find_spec("pyradiance")
-    if spec is None or spec.origin is None:
+    try:
+        program = package_folder() / "bin" / "rtrace"
+    except MachineError:
         return None
-    program = Path(spec.origin).parent / "bin" / "rtrace"
-    return f"pyradiance {_package('pyradiance')}" if program.exists() else None
+    return f"pyradiance {radiance_version()}" if program.exists() else None
 
 
 def findings() -> list[Finding]:

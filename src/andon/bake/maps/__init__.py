@@ -22,7 +22,7 @@ this package follows (`andon.transport.baked`); Ward 1994 (the Radiance system).
 from __future__ import annotations
 
 from andon.bake.maps.drive import Progress, bake_maps
-from andon.bake.maps.plan import MapsPlan, plan_maps
+from andon.bake.maps.plan import MapsPlan, plan_maps, searched_cameras
 from andon.bake.maps.report import BakedMapsReport
 
-__all__ = ["BakedMapsReport", "MapsPlan", "Progress", "bake_maps", "plan_maps"]
+__all__ = ["BakedMapsReport", "MapsPlan", "Progress", "bake_maps", "plan_maps", "searched_cameras"]

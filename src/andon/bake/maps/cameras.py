@@ -12,7 +12,7 @@ from andon.quantities import Geometry
 from andon.scene import Scene
 from andon.scene.ambient import Baked
 from andon.spaces import View
-from andon.transport.baked.placement import suggested_views
+from andon.transport.baked.placement import Suggested, suggested_views
 
 __all__ = ["MOST_PIXELS", "found_views", "map_name", "stated_views", "watching_views"]
 
@@ -79,8 +79,8 @@ def found_views(
     /,
     *,
     one_sided: bool = False,
-) -> tuple[tuple[View, ...], float]:
-    """Views that together see `geometry`, those of the rig first; and the share that they see.
+) -> Suggested:
+    """Views that together see `geometry`, those of the rig first, with the names of maps.
 
     `one_sided` : backs of the surface are unknown, as those of a depth image. Raises `InputError`
     where nothing can be seen.
@@ -103,5 +103,6 @@ def found_views(
             remedy=error.remedy or "state [[baked.camera]] with position and look_at",
         ) from error
     views = enumerate(suggested.views)
-    named = tuple(replace(view, name=map_name(number)) for number, view in views)
-    return named, suggested.coverage
+    return replace(
+        suggested, views=tuple(replace(view, name=map_name(number)) for number, view in views)
+    )

@@ -12,14 +12,16 @@ from andon.engines.baked_light import part_of
 from andon.engines.prepared import prepare
 from andon.errors import InputError
 from andon.files.radiance_text import read_included
+from andon.quantities import Geometry
 from andon.scene import Scene
 from andon.scene.ambient import Baked
 from andon.spaces import View
 from andon.transport.baked.model import Part
+from andon.transport.baked.placement import Suggested
 from andon.transport.baked.radiance.bodies import unsaid
 from andon.transport.baked.radiance.quality import QUALITIES, Quality
 
-__all__ = ["MapsPlan", "Planned", "plan_maps", "planned"]
+__all__ = ["MapsPlan", "Planned", "plan_maps", "planned", "searched_cameras"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,14 +108,11 @@ def planned(scene: Scene, /, *, trust: bool = False) -> Planned:
     include = read_included(included, trust=trust)
     moments = moments_of(scene)
     stated = stated_views(scene, baked)
-    prepared = prepare(scene, drawn=False)
-    world = BakedWorld(scene, prepared)
-    geometry = world.visible(0.0)
-    shapes = {name: frame.view.shape for name, frame in prepared.frames.items()}
+    world = BakedWorld(scene, prepare(scene, drawn=False))
     views, coverage = stated, None
     if not stated:
-        watching, one_sided = watching_views(scene, shapes), bool(prepared.surface.depth)
-        views, coverage = found_views(scene, baked, geometry, watching, one_sided=one_sided)
+        found = _found(scene, baked, world, world.visible(0.0))
+        views, coverage = found.views, found.coverage
     seen = tuple(
         _seen_share(scene, world, view, number, moments) for number, view in enumerate(views)
     )
@@ -140,6 +139,25 @@ def _check_skies(scene: Scene, baked: Baked) -> None:
             )
 
 
+def searched_cameras(scene: Scene, /) -> tuple[Geometry, Suggested]:
+    """What maps see, and the cameras that a bake finds for it where the scene states none.
+
+    Raises `InputError` without [baked], and where nothing can be seen.
+    """
+    if scene.baked is None:
+        raise _missing(scene)
+    world = BakedWorld(scene, prepare(scene, drawn=False))
+    geometry = world.visible(0.0)
+    return geometry, _found(scene, scene.baked, world, geometry)
+
+
+def _found(scene: Scene, baked: Baked, world: BakedWorld, geometry: Geometry) -> Suggested:
+    prepared = world.prepared
+    shapes = {name: frame.view.shape for name, frame in prepared.frames.items()}
+    one_sided = bool(prepared.surface.depth)
+    return found_views(scene, baked, geometry, watching_views(scene, shapes), one_sided=one_sided)
+
+
 def _part(transport: str) -> Part:
     part = part_of(transport)
     assert part is not None  # the scene's own rules
@@ -148,12 +166,7 @@ def _part(transport: str) -> Part:
 
 def _table(scene: Scene) -> Baked:
     if scene.baked is None:
-        raise InputError(
-            "is missing: nothing says what to bake",
-            file=scene.file,
-            field="baked",
-            remedy='add [baked] with folder = "maps" and lamps = ["…"]',
-        )
+        raise _missing(scene)
     if not scene.baked.lamps:
         raise InputError(
             "names no lamp, so there is no light to bake",
@@ -167,6 +180,15 @@ def _table(scene: Scene) -> Baked:
                 f"names {name!r} twice", file=scene.file, field=f"baked.lamps[{index}]"
             )
     return scene.baked
+
+
+def _missing(scene: Scene) -> InputError:
+    return InputError(
+        "is missing: nothing says what to bake",
+        file=scene.file,
+        field="baked",
+        remedy='add [baked] with folder = "maps" and lamps = ["…"]',
+    )
 
 
 def _folder(scene: Scene, baked: Baked) -> Path:

@@ -16,6 +16,7 @@ it would be blamed when the task before it takes the worker down. Workers of one
 
 from __future__ import annotations
 
+import gc
 import importlib
 import logging
 import queue
@@ -87,6 +88,9 @@ class DaskWorkers:
             security = distributed.Security(
                 tls_ca_file=ca, tls_client_cert=cert, tls_client_key=key, require_encryption=True
             )
+        # Clients that were lost end when Python finds them; if that is while another one starts,
+        # both wait for one lock of the library for ever.
+        gc.collect()
         try:
             client = distributed.Client(
                 self.address,

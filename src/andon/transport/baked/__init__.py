@@ -4,7 +4,8 @@ What
     A map holds what a camera of the bake saw: depth, normal, and lux of each lamp. A point of the
     frame is projected into every map; the four texels around it count if their surface is the
     point's; maps that see it are blended, or the first one is taken, as in the relighting paper
-    (section 2.3). Light is not guessed: what no map sees gets none, and is counted (`BakedSeen`).
+    (section 2.3). What no map sees is counted (`BakedSeen`) and gets no light, but along rims of
+    a pixel or two, which take that of what lies beside them in the picture (`rims`).
 Is it the same surface?
     The paper compares depths: |depth in the map − stored| < ε. On a floor at a slant neighbouring
     texels differ by more than any useful ε, and in a corner both walls have the same depth. Here

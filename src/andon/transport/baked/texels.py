@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,10 +58,18 @@ class Texels:
     trust: Float
 
 
-@lru_cache(maxsize=16)
+_kept: WeakKeyDictionary[IlluminanceMap, dict[float, Texels]] = WeakKeyDictionary()
+
+
 def kept_texels(seen: IlluminanceMap, depth_tolerance_m: float, /) -> Texels:
-    """`texels_of`, of the last few maps: the frames of a session ask for the same ones again."""
-    return texels_of(seen, depth_tolerance_m)
+    """`texels_of`, kept as long as the map is: the frames of a session ask for the same ones again.
+
+    Not the last few of any: whoever asks for more maps than that in turn would find none.
+    """
+    own = _kept.setdefault(seen, {})
+    if depth_tolerance_m not in own:
+        own[depth_tolerance_m] = texels_of(seen, depth_tolerance_m)
+    return own[depth_tolerance_m]
 
 
 def texels_of(seen: IlluminanceMap, depth_tolerance_m: float, /) -> Texels:

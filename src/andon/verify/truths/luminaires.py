@@ -9,17 +9,13 @@ have six digits. Type A it refuses, and directions outside the file's angles it 
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.errors import MachineError
-from andon.files.radiance_programs import package_folder
+from andon.files.radiance_programs import run_radiance
 from andon.transport.baked.radiance.text import LUMENS_PER_WATT
 
 __all__ = ["radiance_candela"]
@@ -40,31 +36,13 @@ def radiance_candela(file: Path, directions: Float, /, *, multiplier: float = 1.
     with TemporaryDirectory() as name:
         folder = Path(name)
         lamp = ["-i", repr(RADIUS_M), "-t", "default", "-m", repr(multiplier), "-o", "lamp"]
-        _run(folder, "ies2rad", [*lamp, str(file.resolve())])
+        run_radiance("ies2rad", [*lamp, str(file.resolve())], b"", LIMIT_SECONDS, cwd=folder)
         # An illum is seen through, a light is not; only its place and size are wanted here.
         scene = (folder / "lamp.rad").read_text().replace(" illum ", " light ")
         (folder / "lamp.rad").write_text(scene)
-        (folder / "lamp.oct").write_bytes(_run(folder, "oconv", ["lamp.rad"]))
-        out = _run(folder, "rtrace", ["-h", "-ab", "0", "lamp.oct"], feed)
+        octree = run_radiance("oconv", ["lamp.rad"], b"", LIMIT_SECONDS, cwd=folder)
+        (folder / "lamp.oct").write_bytes(octree)
+        words = ["-h", "-ab", "0", "lamp.oct"]
+        out = run_radiance("rtrace", words, feed, LIMIT_SECONDS, cwd=folder)
     radiance = np.array([line.split() for line in out.decode().splitlines()], np.float64)
     return radiance[:, 1] * np.pi * RADIUS_M**2 * LUMENS_PER_WATT
-
-
-def _run(folder: Path, program: str, arguments: list[str], feed: bytes = b"") -> bytes:
-    package = package_folder()
-    path = shutil.which(program, path=str(package / "bin"))
-    if path is None:
-        raise MachineError(f"Radiance's {program} is missing", remedy="pip install pyradiance")
-    environment = dict(os.environ, RAYPATH=os.pathsep.join([str(package / "lib"), str(folder)]))
-    done = subprocess.run(
-        [path, *arguments],
-        cwd=folder,
-        env=environment,
-        input=feed,
-        capture_output=True,
-        timeout=LIMIT_SECONDS,
-    )
-    if done.returncode != 0:
-        said = done.stderr.decode(errors="replace").strip().splitlines()
-        raise MachineError(f"Radiance's {program} failed: {said[-1] if said else 'no message'}")
-    return done.stdout

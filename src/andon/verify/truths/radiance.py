@@ -36,7 +36,6 @@ __all__ = [
     "RadianceScene",
     "Timing",
     "irradiance",
-    "time_picture",
     "time_view",
 ]
 
@@ -204,24 +203,6 @@ def irradiance(
     """(n, 3) lux, see `RadianceScene.irradiance`; builds the octree anew at every call."""
     with RadianceScene(geometry, lamps) as scene:
         return scene.irradiance(points, normals, ambient_bounces=ambient_bounces, threads=threads)
-
-
-def time_picture(
-    scene: RadianceScene,
-    points: NDArray[Any],
-    normals: NDArray[Any],
-    /,
-    *,
-    repeats: int = 1,
-    threads: int | None = None,
-) -> Timing:
-    """How long Radiance takes for the direct light at (n, 3) points, one per pixel.
-
-    What each pixel sees is known beforehand; `time_view` has Radiance find it.
-    """
-    return Timing(
-        _timed(lambda: scene.irradiance(points, normals, threads=threads), repeats), len(points)
-    )
 
 
 def time_view(

@@ -36,7 +36,8 @@ __all__ = [
 Float = NDArray[np.float64]
 
 # Pixels beyond these are averaged: what is reflected does not show them, and pictures travel to
-# every worker. More than so many along a side, and finer than so many metres on the surface.
+# every worker. More than so many along a side, and finer than so many metres on the surface: in a
+# room of photographed mats that is 49 MB less of 66, and 0.1 % of the light (median, most 0.9 %).
 MOST_PX = 1024
 FINEST_M = 0.005
 

@@ -1,4 +1,4 @@
-"""Illuminance and luminance by `rtrace`, the same to the last bit in every run.
+"""Illuminance by `rtrace`, the same to the last bit in every run.
 
 ::
 
@@ -29,6 +29,7 @@ from andon.files.radiance_programs import run_radiance
 from andon.transport.baked.model import Part
 from andon.transport.baked.radiance.quality import Quality
 from andon.transport.baked.radiance.smoothing import chosen_points, lonely_points, smoothed
+from andon.transport.baked.radiance.text import LUMENS_PER_WATT
 
 __all__ = ["traced_illuminance"]
 
@@ -43,8 +44,6 @@ OCTREE, BOUNCES, DETAIL = "scene.oct", "bounce.oct", "detail.oct"
 MOST = 1.25
 # Of the points that are traced, as many may be added where neighbours are too few.
 MORE = 0.3
-# Radiance's own luminous efficacy, lm/W, applied channel by channel.
-LUMENS_PER_WATT = 179.0
 # What is the same in every quality. Every lamp is tested (-dt, -dc), at its centre (-dj); there are
 # no mirrors, so no virtual lamps (-dr). One process, and random numbers that begin alike: with -u+,
 # the default, the clock chooses them.

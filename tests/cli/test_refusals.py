@@ -404,8 +404,8 @@ def test_what_is_settled_and_not_drawn_yet(refused_scene, text, field):
 def test_a_lamp_with_a_baked_transport(refused_scene):
     lamp = '[[lamp]]\nname="l"\nkind="point"\nposition=[0,0,-1]\nflux_lm=1.0\ntransport="baked"\n'
     line = refused_scene(lamp + '[baked]\nfolder = "maps"\nlamps = ["l"]\n')
-    assert "lamp[0].transport" in line
-    assert "use 'direct'" in line
+    assert "baked.folder" in line
+    assert "andon bake scene.toml makes them" in line
 
 
 # ── the command line itself ───────────────────────────────────────────────────────────────────

@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 
+from andon.engines.digest import digest
 from andon.errors import InputError
 from andon.lamps import (
     DirectionalLamp,
@@ -17,6 +18,7 @@ from andon.lamps import (
     resolve_lamps,
 )
 from andon.lamps.distributions import spot_solid_angle_sr
+from andon.lamps.sources import resolve_sources
 from andon.quantities import photometric
 from andon.scene import scene_from_dict
 
@@ -128,10 +130,21 @@ def test_what_is_not_rendered_yet_is_refused_with_a_way_out(table, what):
     assert "; use " in message
 
 
-def test_baked_transport_is_refused_not_forgotten():
-    baked = POINT | {"name": "lantern", "transport": "baked"}
-    with pytest.raises(InputError, match="transport 'baked'"):
-        resolve(baked, baked={"folder": "maps", "lamps": ["lantern"]})
+@pytest.mark.parametrize("transport", ["baked", "direct+bounce"])
+def test_how_light_travels_changes_no_lamp(transport):
+    lantern = POINT | {"name": "lantern", "transport": transport}
+    tables = {"baked": {"folder": "maps", "lamps": ["lantern"]}}
+    (ours,) = resolve(lantern, **tables)
+    (plain,) = resolve(lantern | {"transport": "direct"})
+    assert digest(ours) == digest(plain)
+
+
+def test_light_of_the_photograph_is_not_baked():
+    source = POINT | {"name": "window", "transport": "baked"}
+    scene = scene_from_dict({"ambient": {"illuminance_lux": 100.0, "source": [source]}})
+    with pytest.raises(InputError, match="transport 'baked'") as caught:
+        resolve_sources(scene, 0.0, ["objects"])
+    assert "the photograph has its light already" in str(caught.value)
 
 
 def test_overflow_is_refused():

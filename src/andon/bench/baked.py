@@ -17,6 +17,7 @@ from andon.gpu.device import open_gpu
 from andon.surface.reference import trace
 from andon.surface.stage import SurfaceStage
 from andon.transport.baked import BakedLight, BakedMoment, IlluminanceMap, illuminance_at
+from andon.transport.baked.rims import with_rims
 from andon.transport.baked.stage import BakedBuffers, BakedPicture
 from andon.verify.rooms import random_view
 from andon.verify.setting import room, room_setting
@@ -75,7 +76,11 @@ def _frame(count: int) -> tuple[Callable[[bool], bool], Callable[[], Any], float
         return submitted(lambda encoder: picture.encode(encoder, 0.0, changed=anew))
 
     def peer() -> Any:
-        return illuminance_at(light, 0.0, position, normal)
+        lux, covered = illuminance_at(light, 0.0, position, normal)
+        whole, there = np.zeros((*surface.view.shape, 3)), np.zeros(surface.view.shape, bool)
+        whole[surface.valid], there[surface.valid] = lux, covered
+        lit = with_rims(whole, there, surface, light.depth_tolerance_m)
+        return lit[surface.valid], covered
 
     ours(True)
     got, (lux, covered) = picture.lux.read()[surface.valid], peer()

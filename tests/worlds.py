@@ -8,11 +8,14 @@ import numpy as np
 
 from andon.files.pictures import write_png
 from andon.quantities import Geometry
+from andon.surface.objects import joined
 
 __all__ = [
     "ALL_CODES",
     "ball",
     "block",
+    "open_room",
+    "points_on",
     "scene",
     "sheet",
     "sphere_depth",
@@ -61,6 +64,27 @@ def sheet(corner, along, across):
     corner, along, across = (np.asarray(v, float) for v in (corner, along, across))
     positions = np.array([corner, corner + along, corner + along + across, corner + across])
     return Geometry(positions, np.array([[0, 1, 2], [0, 2, 3]], np.int32))
+
+
+def open_room():
+    """Floor and two walls (light may come from outside), a block and a ball."""
+    floor = block((6, 0.2, 6), (0, -0.1, 0))
+    back = block((6, 3, 0.2), (0, 1.5, -2.6))
+    side = block((0.2, 3, 6), (-2.6, 1.5, 0))
+    return joined(
+        [floor, back, side, block((0.6, 1.0, 0.6), (-0.6, 0.5, -0.8)), ball(0.4, (0.6, 0.4, 0), 8)]
+    )
+
+
+def points_on(geometry, count, seed=1):
+    """(count, 3) points spread evenly over the triangles, and the normals there."""
+    random = np.random.default_rng(seed)
+    corners = geometry.positions[geometry.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(across, axis=1)
+    chosen = random.choice(len(corners), count, p=area / area.sum())
+    points = np.einsum("ij,ijk->ik", random.dirichlet((1, 1, 1), count), corners[chosen])
+    return points, across[chosen] / area[chosen][:, None]
 
 
 def sphere_depth(view, centre, radius):

@@ -1,15 +1,12 @@
 """Bakes: bounces, states, and that nothing done is lost."""
 
-import os
 import signal
 import subprocess
-import sys
-import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from worlds_of_probes import furnace, lamp_room, scene_of
+from worlds_of_probes import bake_command, furnace, lamp_room, scene_of, stopped
 
 import andon.bake.bake as bake_module
 from andon.bake import bake_file, bake_probes
@@ -342,24 +339,14 @@ high = [0.8, 0.8, 0.8]
 """
 
 
-def command(folder):
-    arguments = ["-m", "andon", "probes", "bake", str(folder / "scene.toml")]
-    return [sys.executable, *arguments, "--engine", "reference"]
-
-
 def interrupted(folder, how):
     """Ends a bake by a signal once it has made some results; returns its exit code."""
     kept = folder / "probes.glb.bake"
-    before = len(list(kept.glob("*.probe")))
-    process = subprocess.Popen(
-        command(folder), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=os.environ
-    )
-    deadline = time.monotonic() + 100
-    while len(list(kept.glob("*.probe"))) < before + 6 and time.monotonic() < deadline:
-        assert process.poll() is None, "it ended before it could be stopped"
-        time.sleep(0.01)
-    process.send_signal(how)
-    return process.wait(60)
+
+    def results():
+        return len(list(kept.glob("*.probe")))
+
+    return stopped(bake_command(folder), how, results, results() + 6)
 
 
 def test_kill_at_any_moment_gives_the_same_bytes(tmp_path):
@@ -369,12 +356,12 @@ def test_kill_at_any_moment_gives_the_same_bytes(tmp_path):
     assert len(list((tmp_path / "probes.glb.bake").iterdir())) >= 6
     assert interrupted(tmp_path, signal.SIGINT) == 130
     assert not (tmp_path / "probes.glb").exists()
-    done = subprocess.run(command(tmp_path), check=True, capture_output=True, text=True)
+    done = subprocess.run(bake_command(tmp_path), check=True, capture_output=True, text=True)
     assert "kept from before" in done.stderr
     assert "andon probes show" in done.stderr
     assert done.stdout.strip() == str(tmp_path / "probes.glb")
     resumed = (tmp_path / "probes.glb").read_bytes()
     (tmp_path / "probes.glb").unlink()
-    subprocess.run(command(tmp_path), check=True, capture_output=True)
+    subprocess.run(bake_command(tmp_path), check=True, capture_output=True)
     assert (tmp_path / "probes.glb").read_bytes() == resumed
     assert not (tmp_path / "probes.glb.bake").exists()

@@ -1,13 +1,10 @@
 """Bakes by Radiance that are killed, and what the command refuses."""
 
-import os
 import signal
 import subprocess
-import sys
-import time
 
 import pytest
-from worlds_of_probes import lamp_room
+from worlds_of_probes import bake_command, lamp_room, stopped
 
 SCENE = """
 [surface]
@@ -38,8 +35,7 @@ position = [0.1, -0.7, 0.2]
 
 
 def command(folder, *more):
-    arguments = ["-m", "andon", "probes", "bake", str(folder / "scene.toml")]
-    return [sys.executable, *arguments, "--engine", "reference", "--bounces-by", "radiance", *more]
+    return bake_command(folder, "--bounces-by", "radiance", *more)
 
 
 def killed(folder, how, *more):
@@ -49,16 +45,7 @@ def killed(folder, how, *more):
     def results():
         return len(list(kept.glob("*.probe"))) + len(list(kept.glob("traced/*.npy")))
 
-    before = max(results(), 4)
-    process = subprocess.Popen(
-        command(folder, *more), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=os.environ
-    )
-    deadline = time.monotonic() + 100
-    while results() < before + 1 and time.monotonic() < deadline:
-        assert process.poll() is None, "it ended before it could be stopped"
-        time.sleep(0.01)
-    process.send_signal(how)
-    return process.wait(60)
+    return stopped(command(folder, *more), how, results, max(results(), 4) + 1)
 
 
 def test_kill_at_any_moment_gives_the_same_bytes(tmp_path):

@@ -1,5 +1,10 @@
 """Small scenes for bakes."""
 
+import os
+import subprocess
+import sys
+import time
+
 import numpy as np
 
 from andon.scene import scene_from_dict
@@ -42,3 +47,21 @@ def lamp_room(folder, *, colour=(0.8, 0.4, 0.2), **tables):
     write_glb(folder / "room.glb", geometry, colour=colour)
     lamp = {"kind": "point", "position": [0.5, 1.2, -0.7], "intensity_cd": 200.0}
     return scene_of(folder, **({"surface": {"mesh": "room.glb"}, "lamp": [lamp]} | tables))
+
+
+def bake_command(folder, *more):
+    """A bake of the probes of ``scene.toml`` as a process of its own."""
+    arguments = ["-m", "andon", "probes", "bake", str(folder / "scene.toml")]
+    return [sys.executable, *arguments, "--engine", "reference", *more]
+
+
+def stopped(command, how, results, enough):
+    """Ends a process by a signal once `results()` are `enough`; returns its exit code."""
+    quiet = subprocess.DEVNULL
+    process = subprocess.Popen(command, stdout=quiet, stderr=quiet, env=os.environ)
+    deadline = time.monotonic() + 100
+    while results() < enough and time.monotonic() < deadline:
+        assert process.poll() is None, "it ended before it could be stopped"
+        time.sleep(0.01)
+    process.send_signal(how)
+    return process.wait(60)

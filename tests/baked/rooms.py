@@ -4,6 +4,7 @@ import numpy as np
 
 from andon.quantities import Geometry, merged
 from andon.rays import RayScene, face_normals
+from worlds import points_on
 
 __all__ = ["L_SHAPE", "TWO_ROOMS", "finer_coverage", "plan_area", "plan_room", "random_sides"]
 
@@ -56,15 +57,7 @@ def plan_area(plan):
 
 def random_sides(geometry, count, seed):
     """Points and normals of both sides, by chance with the area; not stratified."""
-    random = np.random.default_rng(seed)
-    corners = geometry.positions[geometry.triangles]
-    areas = np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-    )
-    triangle = random.choice(len(areas), count, p=areas / areas.sum())
-    weights = random.dirichlet((1, 1, 1), count)
-    points = np.einsum("ij,ijk->ik", weights, corners[triangle])
-    normals = face_normals(geometry)[triangle]
+    points, normals = points_on(geometry, count, seed)
     return np.concatenate([points, points]), np.concatenate([normals, -normals])
 
 

@@ -12,7 +12,7 @@ from requirements import required
 from .command import run_andon
 
 required("pyradiance")
-distributed = pytest.importorskip("distributed", reason="pip install 'andon[cluster]'")
+distributed = required("distributed")
 
 
 @pytest.fixture

@@ -18,21 +18,10 @@ from andon.lamps import (
     TubeLamp,
 )
 from andon.spaces import View, look_at
-from andon.surface.objects import joined
-from worlds import ball, block, unit
+from worlds import ball, unit
 
 POSE = look_at(np.array([1.6, 1.7, 2.1]), np.array([-0.2, 0.6, -0.3]))
 VIEW = View("pinhole", 240, 180, 150.0, 150.0, 119.5, 89.5, world_from_camera=POSE)
-
-
-def open_room():
-    """Floor and two walls (light may come from outside), a block and a ball."""
-    floor = block((6, 0.2, 6), (0, -0.1, 0))
-    back = block((6, 3, 0.2), (0, 1.5, -2.6))
-    side = block((0.2, 3, 6), (-2.6, 1.5, 0))
-    return joined(
-        [floor, back, side, block((0.6, 1.0, 0.6), (-0.6, 0.5, -0.8)), ball(0.4, (0.6, 0.4, 0), 8)]
-    )
 
 
 def lamps(shadow):

@@ -16,7 +16,8 @@ from andon.transport.direct.balls.records import MAX_PAIRS
 from andon.verify.edges import near_change
 from andon.verify.setting import prepared_of
 from comparison import assert_agree, assert_golden
-from direct.rooms import HARD, SOFT, VIEW, lamps, luminaire, open_room
+from direct.rooms import HARD, SOFT, VIEW, lamps, luminaire
+from worlds import open_room
 
 # One in the air before the block, tinted; one near it, of strong dispersion, in the other's light.
 BALLS = (

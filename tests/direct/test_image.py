@@ -8,7 +8,8 @@ from andon.pipeline import Renderer
 from andon.quantities import photometric
 from andon.verify.setting import prepared_of
 from comparison import assert_golden
-from direct.rooms import SOFT, VIEW, lamps, open_room
+from direct.rooms import SOFT, VIEW, lamps
+from worlds import open_room
 
 # The GPU's shadow edges may lie a texel beside the reference's: 3 % of these pixels.
 EDGES = {"share": 0.03, "mean": 1.5}

@@ -12,8 +12,8 @@ from andon.verify.rooms import random_view
 from andon.verify.rows.closed_forms import floor_error
 from andon.verify.setting import prepared_of, room, room_lamps
 from comparison import assert_agree
-from direct.rooms import HARD, SOFT, VIEW, lamps, open_room
-from worlds import ball
+from direct.rooms import HARD, SOFT, VIEW, lamps
+from worlds import ball, open_room
 
 pytestmark = pytest.mark.usefixtures("gpu")
 

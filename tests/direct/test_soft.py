@@ -14,7 +14,8 @@ from andon.transport.direct.soft import sample_points, sample_weights
 from andon.verify.edges import near_change
 from andon.verify.setting import prepared_of
 from comparison import assert_agree
-from direct.rooms import HARD, VIEW, area_lamps, luminaire, open_room
+from direct.rooms import HARD, VIEW, area_lamps, luminaire
+from worlds import open_room
 
 UP = np.array([0.0, 1.0, 0.0])
 

@@ -7,10 +7,8 @@ import numpy as np
 
 from andon.bake.tasks import write_bundle
 from andon.files.radiance_programs import run_radiance
-from andon.surface.objects import joined
 from andon.transport.direct import reference
 from andon.transport.direct.casters import Casters, ShadowRays
-from worlds import ball, block
 
 # Every lamp at its tiles' middles, no light lost: what is left is what the files say.
 EXACT = ["-dt", "0", "-dc", "1", "-dj", "0", "-ds", "0", "-lw", "1e-8", "-lr", "-20"]
@@ -36,27 +34,6 @@ def _traced(bundle, rays, options):
         feed = np.ascontiguousarray(rays, float).tobytes()
         answer = run_radiance("rtrace", words, feed, 120, cwd=Path(name))
     return np.frombuffer(answer).reshape(-1, 3) * 179
-
-
-def open_room():
-    """Floor and two walls (light may come from outside), a block and a ball."""
-    floor = block((6, 0.2, 6), (0, -0.1, 0))
-    back = block((6, 3, 0.2), (0, 1.5, -2.6))
-    side = block((0.2, 3, 6), (-2.6, 1.5, 0))
-    return joined(
-        [floor, back, side, block((0.6, 1.0, 0.6), (-0.6, 0.5, -0.8)), ball(0.4, (0.6, 0.4, 0), 8)]
-    )
-
-
-def points_on(geometry, count, seed=1):
-    """(count, 3) points spread evenly over the triangles, and the normals there."""
-    random = np.random.default_rng(seed)
-    corners = geometry.positions[geometry.triangles]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.linalg.norm(across, axis=1)
-    chosen = random.choice(len(corners), count, p=area / area.sum())
-    points = np.einsum("ij,ijk->ik", random.dirichlet((1, 1, 1), count), corners[chosen])
-    return points, across[chosen] / area[chosen][:, None]
 
 
 def our_direct(lamps, groups, points, normals):

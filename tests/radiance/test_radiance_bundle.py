@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from asked import lux_of, open_room
+from asked import lux_of
 from test_radiance_lamps import LAMPS
 
 from andon.errors import MachineError
@@ -15,7 +15,7 @@ from andon.surface.objects import joined
 from andon.transport.baked.radiance import OCTREE, radiance_bundle
 from andon.transport.baked.radiance.scene import DETAIL_OCTREE
 from requirements import required
-from worlds import block
+from worlds import block, open_room
 
 required("pyradiance")
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from asked import errors, lux_of, open_room, our_direct, points_on
+from asked import errors, lux_of, our_direct
 
 from andon.errors import InputError
 from andon.files.photometry import Distribution, read_photometry
@@ -23,7 +23,7 @@ from andon.lamps import (
 from andon.quantities import Geometry
 from andon.transport.baked.radiance import is_distant_glow, radiance_bundle, unsaid
 from requirements import required
-from worlds import ball, unit
+from worlds import ball, open_room, points_on, unit
 
 required("pyradiance")
 

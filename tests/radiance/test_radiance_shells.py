@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from asked import errors, luminance_of, lux_of, our_direct, points_on
+from asked import errors, luminance_of, lux_of, our_direct
 
 from andon.engines.prepared import prepare
 from andon.lamps import PointLamp, Shadow, Shell, SphereLamp, SpotLamp, body_of, expand
@@ -14,7 +14,7 @@ from andon.scene import load_scene
 from andon.transport.baked.radiance import radiance_bundle
 from andon.verify.rows.lampshade import drum
 from requirements import required
-from worlds import block
+from worlds import block, points_on
 
 required("pyradiance")
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from andon.bake.bake import DEFAULT_STATE, bake_probes
+from andon.bake.folders import check_parent, check_writable
 from andon.bake.journal import Journal
 from andon.bake.panoramas import check_panoramas
 from andon.bake.radiance_bounces import forget
@@ -16,7 +17,6 @@ from andon.bake.tasks import Workers
 from andon.bake.tasks.lock import locked
 from andon.engines.reading import read_pictures, view_of
 from andon.errors import InputError
-from andon.files.atomic import write_bytes
 from andon.files.volumes import write_volume
 from andon.quantities import Geometry
 from andon.scene import Scene
@@ -78,7 +78,7 @@ def bake_file(
     folder = path.with_name(path.name + ".bake")
     with locked(folder, of="this volume", remedy="wait for it, or name another probes.volume"):
         check_states(path, plan, replaces=replaces)
-        _check_folder(folder)
+        check_writable(folder)
         journal = Journal(folder)
         if fresh:
             journal.clear()
@@ -105,19 +105,8 @@ def _target(scene: Scene) -> tuple[Probes, Path]:
         raise InputError(
             f"must end in .glb, got {path.name!r}", file=scene.file, field="probes.volume"
         )
-    if not path.parent.is_dir():
-        raise InputError(
-            f"the folder {str(path.parent)!r} does not exist",
-            file=scene.file,
-            field="probes.volume",
-            remedy="make it",
-        )
+    check_parent(scene, path, "probes.volume")
     return scene.probes, path
-
-
-def _check_folder(folder: Path) -> None:
-    """A full or read-only disk is known before the first hour, not after it."""
-    write_bytes(folder / "writable", b"writable").unlink(missing_ok=True)
 
 
 def placed_in(scene: Scene, /) -> Placed:

@@ -95,7 +95,8 @@ def undirected(scene: Scene, /) -> frozenset[str]:
 
 def part_of(transport: str, /) -> Part | None:
     """What of a lamp's light the maps hold; None: it is in none."""
-    return {"direct": None, "baked": "all", "direct+bounce": "bounce"}[transport]  # type: ignore[return-value]
+    parts: dict[str, Part | None] = {"direct": None, "baked": "all", "direct+bounce": "bounce"}
+    return parts[transport]
 
 
 def check_counted_once(scene: Scene, probes: SceneProbes | None, model: SurfaceModel, /) -> None:
@@ -129,9 +130,8 @@ def baked_of(
     """The maps that [baked] names, or None; and what is to be said of them.
 
     `lamps` are all of the scene, at its start; `frames` and `ambient` those of `Prepared`;
-    `has_probes`: objects may be lit by probes. Raises
-    `InputError` where there are none yet, where one lacks a lamp of the scene, and where they hold
-    other light than the scene asks for.
+    `has_probes`: objects may be lit by probes. Raises `InputError` where there are none yet, where
+    one lacks a lamp of the scene, and where they hold other light than the scene asks for.
     """
     table = scene.baked
     if table is None or not table.lamps:

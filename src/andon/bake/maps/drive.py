@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from time import perf_counter
 
+from andon.bake.folders import WRITABLE, check_writable
 from andon.bake.maps.jobs import Jobs, jobs_of
 from andon.bake.maps.plan import Planned, planned
 from andon.bake.maps.report import BakedMapsReport
@@ -13,7 +13,6 @@ from andon.bake.tasks import LocalWorkers, Store, TasksProgress, Workers, run_ta
 from andon.bake.tasks.model import Task
 from andon.engines.baked_light import map_facts
 from andon.errors import InputError
-from andon.files.atomic import write_bytes
 from andon.files.illuminance_maps import (
     MANIFEST,
     BakedLamp,
@@ -26,7 +25,6 @@ from andon.scene import Scene
 
 __all__ = ["SUFFIX", "Progress", "bake_maps"]
 
-WRITABLE = "writable"
 SUFFIX = ".exr"
 # (done, of, what is being done or was last, seconds that are left if that is known)
 Progress = Callable[[int, int, str, float | None], None]
@@ -67,7 +65,7 @@ def bake_maps(
     plan = planned(scene, trust=trust)
     store = Store(plan.plan.folder, SUFFIX, beside=(MANIFEST, WRITABLE))
     with store.locked():
-        _check_folder(store.folder)
+        check_writable(store.folder)
         if fresh:
             (store.folder / MANIFEST).unlink(missing_ok=True)
             store.clear()
@@ -109,11 +107,6 @@ def _jobs(scene: Scene, plan: Planned, progress: Progress | None) -> Jobs:
         raise InputError(
             error.rule, file=scene.file, field=error.field, remedy=error.remedy
         ) from error
-
-
-def _check_folder(folder: Path) -> None:
-    """A full or read-only disk is known before the first hour, not after it."""
-    write_bytes(folder / WRITABLE, b"writable").unlink(missing_ok=True)
 
 
 def _preparing(progress: Progress | None) -> Callable[[int, int], None] | None:

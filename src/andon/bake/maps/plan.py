@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from andon.bake.folders import check_parent
 from andon.bake.maps.cameras import found_views, stated_views, watching_views
 from andon.bake.maps.moments import moments_of
 from andon.bake.maps.world import BakedWorld
@@ -200,13 +201,7 @@ def _folder(scene: Scene, baked: Baked) -> Path:
             field="baked.folder",
             remedy="choose another name",
         )
-    if not folder.parent.is_dir():
-        raise InputError(
-            f"the folder {str(folder.parent)!r} does not exist",
-            file=scene.file,
-            field="baked.folder",
-            remedy="make it",
-        )
+    check_parent(scene, folder, "baked.folder")
     return folder
 
 

@@ -28,6 +28,7 @@ from andon.errors import InputError, MachineError
 from andon.files.radiance_programs import run_radiance
 from andon.transport.baked.model import Part
 from andon.transport.baked.radiance.quality import Quality
+from andon.transport.baked.radiance.scene import BOUNCE_OCTREE, DETAIL_OCTREE, OCTREE
 from andon.transport.baked.radiance.smoothing import chosen_points, lonely_points, smoothed
 from andon.transport.baked.radiance.text import LUMENS_PER_WATT
 
@@ -35,9 +36,6 @@ __all__ = ["traced_illuminance"]
 
 Float = NDArray[np.float64]
 
-# What `radiance_bundle` makes: lamps, those of few tiles for what is reflected, and of
-# many, if it was asked for them.
-OCTREE, BOUNCES, DETAIL = "scene.oct", "bounce.oct", "detail.oct"
 # Many tiles give no more than this times the light of few: things close to a lamp take light. Where
 # few see next to nothing, or shine on what touches the lamp, their quotient is chance: with 2 a
 # room with a lantern is 7 % too bright on the mean, all of it on the lantern's frame.
@@ -98,15 +96,15 @@ def traced_illuminance(
     result = np.zeros_like(places)
     # What lamps give by themselves, if `rtrace` finds them everywhere without chance.
     if part == "all" and not direct_bounces:
-        detailed = (folder / DETAIL).exists()
-        result = ask(DETAIL if detailed and alone else OCTREE, rays, 0)
+        detailed = (folder / DETAIL_OCTREE).exists()
+        result = ask(DETAIL_OCTREE if detailed and alone else OCTREE, rays, 0)
         if detailed and not alone:
-            both = np.concatenate([ask(DETAIL, rays[chosen], 0), result[chosen]], axis=1)
+            both = np.concatenate([ask(DETAIL_OCTREE, rays[chosen], 0), result[chosen]], axis=1)
             result = result * _quotient(everywhere(both))
     if bounces or (direct_bounces and part == "all"):
-        found = ask(BOUNCES, rays[chosen], bounces + direct_bounces)
+        found = ask(BOUNCE_OCTREE, rays[chosen], bounces + direct_bounces)
         if part == "bounce" or not direct_bounces:
-            found -= ask(BOUNCES, rays[chosen], direct_bounces)
+            found -= ask(BOUNCE_OCTREE, rays[chosen], direct_bounces)
         result = result + everywhere(np.maximum(found, 0))  # a difference's rounding
     return result.astype(np.float32)
 

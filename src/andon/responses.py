@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 
-__all__ = ["LINEAR", "SRGB", "Response", "srgb_decode", "srgb_encode"]
+__all__ = ["LINEAR", "SRGB", "Response", "SurfaceCurve", "srgb_decode", "srgb_encode"]
 
 Float = NDArray[np.floating[Any]]
 
@@ -116,3 +116,41 @@ class Response:
 
 LINEAR = Response("linear")
 SRGB = Response("srgb")
+
+
+@dataclass(frozen=True)
+class SurfaceCurve:
+    """The illuminance–RGB model of one surface: f, what the camera delivers of it in E lux.
+
+    Piecewise linear per channel, and straight on beyond both ends, so that f⁻¹ undoes f
+    everywhere. The captured pixel carries the texture: f is applied to it, not instead of it.
+    Source: the paper on relighting, section 2 (the *illuminance–RGB model*).
+
+    Attributes
+    ----------
+    illuminance_lux : (n,) float64 ≥ 0, strictly increasing, n ≥ 2.
+    linear : (n, 3) float64, linear camera values, strictly increasing per channel.
+    """
+
+    illuminance_lux: NDArray[np.float64]
+    linear: NDArray[np.float64]
+
+    def linear_of(self, lux: Float, /) -> Float:
+        """f: linear camera values (..., 3) in `lux` (..., 3)."""
+        return _straight_on(lux, np.repeat(self.illuminance_lux[:, None], 3, axis=1), self.linear)
+
+    def lux_of(self, linear: Float, /) -> Float:
+        """f⁻¹: illuminance (..., 3) in lx at which the camera delivers `linear` (..., 3)."""
+        knots = np.repeat(self.illuminance_lux[:, None], 3, axis=1)
+        return _straight_on(linear, self.linear, knots)
+
+
+def _straight_on(values: Float, knots: Float, ordinates: Float) -> Float:
+    """Piecewise linear through (knots, ordinates) (n, 3) per channel, ends prolonged."""
+    channels: list[Float] = []
+    for c in range(3):
+        x, y = knots[:, c], ordinates[:, c]
+        part = np.clip(np.searchsorted(x, values[..., c], side="right") - 1, 0, len(x) - 2)
+        slope = (y[part + 1] - y[part]) / (x[part + 1] - x[part])
+        channels.append(y[part] + slope * (values[..., c] - x[part]))
+    return np.stack(channels, axis=-1)

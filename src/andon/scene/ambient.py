@@ -38,6 +38,17 @@ class Ambient(Table):
         default=False,
         description="E0 from the light probes of [probes].",
     )
+    harmonics: Reference | None = Field(
+        default=None,
+        description="E0 from an estimate of the light that arrives: JSON of 9 spherical-harmonic "
+        "coefficients of luminance, three channels each, world axes (CONVENTIONS.md); E0 is the "
+        "irradiance at each pixel's normal.",
+    )
+    rest_lux: PositiveTriple | None = Field(
+        default=None,
+        description="E0 in lx without the sources, > 0: E0 of a pixel is this plus what every "
+        "[[ambient.source]] gives it, shadows of the real surfaces included.",
+    )
     dimming: NonNegativeTriple = Field(
         default=(1.0, 1.0, 1.0),
         description="Factor on E0 in the result, number or three; 1: unchanged.",
@@ -60,7 +71,13 @@ class Ambient(Table):
 
     @model_validator(mode="after")
     def _check_ambient(self) -> Ambient:
-        exactly_one(self, "illuminance_lux", "map", "probes")
+        exactly_one(self, "illuminance_lux", "map", "probes", "harmonics", "rest_lux")
+        if self.rest_lux is not None and not self.source:
+            raise refusal(
+                "is the light beside the known sources, and none is stated",
+                key="rest_lux",
+                remedy="add [[ambient.source]], or state illuminance_lux",
+            )
         names = {source.name for source in self.source}
         for index, name in enumerate(self.removed):
             if name not in names:

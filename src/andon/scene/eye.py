@@ -255,7 +255,8 @@ class Display(Table):
     )
     dither: bool = Field(
         default=False,
-        description="Noise of half a step against banding.",
+        description="Noise against banding, where light was added to the darks of 8-bit pictures: "
+        "as wide as a step of the photograph has become. What was not changed keeps its bytes.",
     )
 
     @model_validator(mode="after")

@@ -86,6 +86,12 @@ class Shell(Table):
         description="Share of that light that an open shell takes, [0, 1]; 1 − t at most. The "
         "rest leaves through the openings; a closed shell takes all that it does not let through.",
     )
+    real: bool = Field(
+        default=False,
+        description="The shell is a real thing of the photograph, unlit there: its own light is "
+        "added to its pixels instead of hiding them, and the real surface at its place hides no "
+        "light of this lamp.",
+    )
     mode: Literal["exact", "paper"] = Field(
         default="exact",
         description="exact: area lamps and an energy balance; paper: a point lamp of t × the "

@@ -40,6 +40,11 @@ class Depth(Table):
         default=1.0,
         description="Metres (disparity: pixels) per unit of the file; 0.001 for millimetres.",
     )
+    shift_m: float = Field(
+        default=0.0,
+        description="Metres added after scaling, of kinds z and distance; `andon depth fit` "
+        "finds it for relative depth.",
+    )
     baseline_m: Positive | None = Field(
         default=None,
         description="Of disparity: distance of the cameras.",
@@ -73,6 +78,10 @@ class Depth(Table):
             raise refusal(
                 "kind 'disparity' needs it", key="baseline_m", remedy="state it in metres"
             )
+        if self.kind == "disparity" and "shift_m" in self.model_fields_set:
+            raise refusal(
+                "belongs to kinds z and distance", key="shift_m", remedy="state doffs_px instead"
+            )
         if self.kind != "disparity":
             for key in ("baseline_m", "focal_px", "doffs_px"):
                 if key in self.model_fields_set:
@@ -85,7 +94,13 @@ class SurfaceResponse(Table):
 
     material: Name = Field(
         default="*",
-        description="Name of the material in the mesh; * is all others.",
+        description="Name of the material in the mesh; * is all others. Where `mask` is stated: "
+        "a name for messages.",
+    )
+    mask: Reference | None = Field(
+        default=None,
+        description="Picture of the view, white where the surface is; for surfaces without "
+        "materials (depth, normals).",
     )
     file: Reference | None = Field(
         default=None,
@@ -162,7 +177,8 @@ class Surface(Table):
     )
     reflectance_map: Reference | None = Field(
         default=None,
-        description="Picture of ρ in the view, linear, instead of `reflectance`.",
+        description="Picture of ρ in the view, linear, instead of `reflectance`: where E0 is too "
+        "weak for the photograph to tell what the surface reflects, added light falls on this ρ.",
     )
     occluder_triangles: Count = Field(
         default=30000,

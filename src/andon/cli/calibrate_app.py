@@ -1,0 +1,17 @@
+"""``andon calibrate`` and its sub-commands, listed once."""
+
+from __future__ import annotations
+
+import typer
+
+__all__ = ["calibrate_app"]
+
+calibrate_app = typer.Typer(no_args_is_help=True)
+
+
+@calibrate_app.callback()
+def _calibrate() -> None:
+    """Find from pictures what a scene states: responses, surfaces, the light of a photograph."""
+
+
+# In the order of ``andon calibrate --help``.

@@ -33,7 +33,10 @@ CASES = [
     ('[[lamp]]\nkind = "sky"', "lamp[0]: illuminance_lux is required"),
     ('[rig]\nkind = "stereo"\n[rig.left]', "rig.right: a stereo rig needs both eyes; add [rig.ri"),
     ("[surface]", "surface: exactly one of mesh, depth, normals is allowed, got none"),
-    ("[ambient]", "ambient: exactly one of illuminance_lux, map, probes is allowed, got none"),
+    (
+        "[ambient]",
+        "ambient: exactly one of illuminance_lux, map, probes, harmonics, rest_lux is allowed, got none",
+    ),
     ('[surface.depth]\nfile = "d"\nkind = "disparity"', "surface.depth.baseline_m: kind 'dispari"),
     ("[[glass]]", "glass[0].radius_m: shape 'sphere' needs radius_m"),
     ('[display]\nmode = "ost"', "display.peak_luminance_cd_m2: mode 'ost' needs it; state the"),

@@ -34,11 +34,11 @@ def relit_linear(frame: CameraFrame, ambient: Ambient, added_lux: Float, /) -> F
     Where light is taken away ΔE is negative; no light at all is the least that is left.
     """
     captured = np.asarray(frame.linear, np.float64)
-    dimming = np.asarray(ambient.dimming)
+    dimming, e0 = np.asarray(ambient.dimming), ambient.lux_of(frame.view.name)
     if ambient.dimming_mode == "linear":
-        return captured * np.maximum(dimming + added_lux / ambient.illuminance_lux, 0)
+        return captured * np.maximum(dimming + added_lux / e0, 0)
     dimmed = frame.response.decode(dimming * frame.response.encode(captured))
-    return np.maximum(dimmed + captured * (added_lux / ambient.illuminance_lux), 0)
+    return np.maximum(dimmed + captured * (added_lux / e0), 0)
 
 
 def unlit_linear(frame: CameraFrame, ambient: Ambient, /) -> Float:

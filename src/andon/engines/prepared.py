@@ -10,6 +10,7 @@ import numpy as np
 from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
 from andon.display.model import Exposure
+from andon.engines.ambient_light import ambient_of
 from andon.engines.baked_light import SceneBaked, baked_of, check_counted_once, undirected
 from andon.engines.checks import check_lamps
 from andon.engines.glare import SceneGlare, glare_of, with_clipped_light
@@ -21,9 +22,8 @@ from andon.engines.photographless import (
     sky_frames,
     white_cd_m2,
 )
-from andon.engines.probes import SceneProbes, ambient_of_probes, changed_since_bake, probes_of
+from andon.engines.probes import SceneProbes, changed_since_bake, probes_of
 from andon.engines.reading import (
-    ambient_of,
     exposure_of,
     glow_of,
     luminance_per_unit_of,
@@ -206,18 +206,14 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
     pictures = read_pictures(scene)
     views = {name: view_of(scene, name, picture.shape) for name, picture in pictures.items()}
     surface = load_surface(scene, views)
-    notes: tuple[str, ...] = ()
-    if scene.ambient is not None and scene.ambient.probes:
-        if not drawn:
-            raise InputError(
-                "is light that a bake does not have yet",
-                file=scene.file,
-                field="ambient.probes",
-                remedy="state ambient.illuminance_lux for the bake",
-            )
-        ambient, notes = ambient_of_probes(scene, probes, surface, views)
-    else:
-        ambient = ambient_of(scene, views)
+    if not drawn and scene.ambient is not None and scene.ambient.probes:
+        raise InputError(
+            "is light that a bake does not have yet",
+            file=scene.file,
+            field="ambient.probes",
+            remedy="state ambient.illuminance_lux for the bake",
+        )
+    ambient, notes = ambient_of(scene, views, surface, probes)
     per_unit = luminance_per_unit_of(scene, ambient)
     frames = {
         name: frame_from_picture(

@@ -33,9 +33,9 @@ class Body:
     inside_cd_m2: Float
     reflectance: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
-    def brightened(self, factor: float) -> Body:
-        """The body with `factor` times its own light."""
-        if factor == 1:
+    def brightened(self, factor: Float | float) -> Body:
+        """The body with `factor` (3,) or a number times its own light."""
+        if np.all(factor == 1):
             return self
         outside, inside = factor * self.outside_cd_m2, factor * self.inside_cd_m2
         return replace(self, outside_cd_m2=outside, inside_cd_m2=inside)

@@ -65,6 +65,8 @@ def bodies_luminance(surface: Surface, lamps: Sequence[Lamp], /) -> Float:
     alone = np.zeros((*surface.view.shape, 3))
     if surface.body_id is not None:
         alone = np.where(surface.body_id[..., None] >= 0, surface.emitted_cd_m2, 0.0)
+    if surface.shell_cd_m2 is not None:
+        alone = alone + surface.shell_cd_m2
     return draw_lamps(alone, surface, lamps)
 
 
@@ -86,6 +88,8 @@ def compose(
     real = frame.luminance_per_unit * relit_linear(frame, ambient, added_lux)
     virtual = object_luminance(surface, ambient, added_lux, standing_lux)
     luminance = np.where(surface.is_object[..., None], virtual, real)
+    if surface.shell_cd_m2 is not None:
+        luminance = luminance + surface.shell_cd_m2
     luminance = luminance if mirror is None else mirror(luminance)
     return draw_lamps(luminance, surface, lamps)
 

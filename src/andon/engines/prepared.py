@@ -23,6 +23,7 @@ from andon.engines.photographless import (
     white_cd_m2,
 )
 from andon.engines.probes import SceneProbes, changed_since_bake, probes_of
+from andon.engines.real_shells import RealShells, real_shells
 from andon.engines.reading import (
     exposure_of,
     glow_of,
@@ -93,6 +94,7 @@ class Prepared:
     highlights : how virtual objects mirror, or None: nothing does.
     baked : illuminance maps, or None: there are none, or nobody asks for them.
     undirected : lamps of the scene whose direct light is not computed, since it is in the maps.
+    shells : those of the bodies that stand in the photograph, or None.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -112,6 +114,7 @@ class Prepared:
     highlights: SceneHighlights | None = None
     baked: SceneBaked | None = None
     undirected: frozenset[str] = frozenset()
+    shells: RealShells | None = None
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
@@ -136,7 +139,8 @@ class Prepared:
             for part, mover in zip(moment.movers, surface.movers, strict=True)
             if mover.casts_shadow
         ]
-        groups = [(REAL, surface.occluder.geometry), (OBJECTS, surface.casters)]
+        real = [(REAL, surface.occluder.geometry)] if self.shells is None else self.shells.groups
+        groups = [*real, (OBJECTS, surface.casters)]
         groups += [(MOVERS, merged(*moving))] if moving else []
         groups += [(body.name, body.geometry) for body in moment.bodies]
         return Casters(tuple(groups))
@@ -164,16 +168,14 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         else (None, ())
     )
     check_counted_once(scene, probes, surface)
+    shells = real_shells(surface, frames, resolve_bodies(scene.steady(), 0.0))
     notes = (*notes, *changed_since_bake(scene, probes, surface, ambient, lamps), *about_maps)
     glass = glass_of(scene, frames, surface, ambient, lamps, probes) if frames else None
     return Prepared(
         frames=frames,
         surface=replace(surface, notes=(*surface.notes, *notes)),
         ambient=ambient,
-        lamps=lambda time_seconds: (
-            *resolve_lamps(scene, time_seconds),
-            *resolve_sources(scene, time_seconds, virtual),
-        ),
+        lamps=_lamps_of(scene, virtual, shells),
         bodies=lambda time_seconds: resolve_bodies(scene, time_seconds),
         exposure=exposure_of(scene),
         glow=glow_of(scene),
@@ -187,7 +189,19 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         highlights=highlights_of(scene, surface),
         baked=baked,
         undirected=undirected(scene),
+        shells=shells,
     )
+
+
+def _lamps_of(
+    scene: Scene, virtual: frozenset[str], shells: RealShells | None
+) -> Callable[[float], tuple[Lamp, ...]]:
+    def lamps(time_seconds: float) -> tuple[Lamp, ...]:
+        own = resolve_lamps(scene, time_seconds)
+        all_ = (*own, *resolve_sources(scene, time_seconds, virtual))
+        return all_ if shells is None else shells.shining(all_)
+
+    return lamps
 
 
 _Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel]
@@ -231,7 +245,7 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
 
 def _virtual_groups(scene: Scene, surface: SurfaceModel) -> frozenset[str]:
     """Caster groups that the photograph did not have: virtual objects, and bodies of lamps."""
-    bodies = [body.name for body in resolve_bodies(scene, 0.0)]
+    bodies = [body.name for body in resolve_bodies(scene, 0.0) if not body.real]
     still = [OBJECTS] if len(surface.casters.triangles) else []
     moving = [MOVERS] if any(mover.casts_shadow for mover in surface.movers) else []
     glass = [GLASS] if any(table.shape == "sphere" for table in scene.glass) else []

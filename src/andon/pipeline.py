@@ -202,7 +202,7 @@ class Renderer:
         report = self._report(captured, surface, layered, baked)
         seen = self._engine.read_seen(captured, *handles[2:])
         return Frame(
-            captured,
+            self.prepared.captured(captured.view.name),
             surface,
             illuminance,
             luminance,

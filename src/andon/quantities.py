@@ -64,6 +64,7 @@ class CameraFrame:
     luminance_per_unit : cd/m² per linear unit, > 0.
     time_seconds : since the start of the session.
     clipped : (H, W) bool, a channel at the end of the sensor's range.
+    code_step : step of the sensor's codes as encoded values, 1/255 or 1/65535; 0: floats.
     """
 
     linear: NDArray[np.float32]
@@ -72,6 +73,7 @@ class CameraFrame:
     luminance_per_unit: float = 1.0
     time_seconds: float = 0.0
     clipped: NDArray[np.bool_] | None = None
+    code_step: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from andon.capture.dither import dithered
 from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
 from andon.display.model import Exposure
@@ -76,7 +77,7 @@ class Prepared:
 
     Attributes
     ----------
-    frames : view name → captured light; one or two views.
+    frames : view name → the light that is relit; one or two views.
     surface : geometry of the scene.
     ambient : the light of the photograph.
     lamps : time in seconds → the lamps of that moment; always the same names and kinds.
@@ -95,6 +96,7 @@ class Prepared:
     baked : illuminance maps, or None: there are none, or nobody asks for them.
     undirected : lamps of the scene whose direct light is not computed, since it is in the maps.
     shells : those of the bodies that stand in the photograph, or None.
+    undithered : view name → what was captured, where `frames` are dithered.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -115,6 +117,11 @@ class Prepared:
     baked: SceneBaked | None = None
     undirected: frozenset[str] = frozenset()
     shells: RealShells | None = None
+    undithered: Mapping[str, CameraFrame] = field(default_factory=dict[str, CameraFrame])
+
+    def captured(self, view_name: str) -> CameraFrame:
+        """What the camera of a view delivered."""
+        return self.undithered.get(view_name, self.frames[view_name])
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
@@ -171,8 +178,10 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
     shells = real_shells(surface, frames, resolve_bodies(scene.steady(), 0.0))
     notes = (*notes, *changed_since_bake(scene, probes, surface, ambient, lamps), *about_maps)
     glass = glass_of(scene, frames, surface, ambient, lamps, probes) if frames else None
+    drawn_frames, about_steps = _with_noise(scene, frames)
+    notes = (*notes, *about_steps)
     return Prepared(
-        frames=frames,
+        frames=drawn_frames,
         surface=replace(surface, notes=(*surface.notes, *notes)),
         ambient=ambient,
         lamps=_lamps_of(scene, virtual, shells),
@@ -190,6 +199,7 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         baked=baked,
         undirected=undirected(scene),
         shells=shells,
+        undithered=frames if scene.display.dither else {},
     )
 
 
@@ -241,6 +251,18 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
     }
     frames = {name: with_clipped_light(scene, frame) for name, frame in frames.items()}
     return frames, ambient, replace(surface, notes=(*surface.notes, *notes))
+
+
+def _with_noise(
+    scene: Scene, frames: dict[str, CameraFrame]
+) -> tuple[dict[str, CameraFrame], tuple[str, ...]]:
+    """The frames, dithered where the scene asks for it, and what to say of it."""
+    if not scene.display.dither:
+        return frames, ()
+    notes: tuple[str, ...] = ()
+    if not any(frame.code_step for frame in frames.values()):
+        notes = ("display.dither changes nothing: light in floats has no steps",)
+    return {name: dithered(frame) for name, frame in frames.items()}, notes
 
 
 def _virtual_groups(scene: Scene, surface: SurfaceModel) -> frozenset[str]:

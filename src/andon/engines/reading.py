@@ -158,10 +158,6 @@ def luminance_per_unit_of(scene: Scene, ambient: Ambient) -> float:
 def exposure_of(scene: Scene) -> Exposure:
     """Settings of the display."""
     display = scene.display
-    if display.dither:
-        raise InputError(
-            "True is in the schema but not rendered yet", file=scene.file, field="display.dither"
-        )
     through = None
     if display.mode == "ost":
         assert display.peak_luminance_cd_m2 is not None  # the schema asks for it

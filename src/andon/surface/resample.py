@@ -54,6 +54,8 @@ def resampled(depth: Float, shape: tuple[int, int], /, *, max_jump: float = 0.05
 
 def _places(old: int, new: int) -> tuple[NDArray[np.intp], Float, NDArray[np.intp]]:
     """Of `new` pixels along a side: the sample before each, how far beyond it, the nearest."""
-    at = np.clip((np.arange(new) + 0.5) * old / new - 0.5, 0, old - 1)
-    before = np.minimum(at.astype(np.intp), old - 1)
-    return before, at - before, np.floor(at + 0.5).astype(np.intp)
+    at = (np.arange(new) + 0.5) * old / new - 0.5
+    # Half a sample at either border is continued from the outer two.
+    before = np.clip(np.floor(at).astype(np.intp), 0, max(old - 2, 0))
+    nearest = np.clip(np.floor(at + 0.5).astype(np.intp), 0, old - 1)
+    return before, at - before, nearest

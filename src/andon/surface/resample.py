@@ -48,8 +48,13 @@ def resampled(depth: Float, shape: tuple[int, int], /, *, max_jump: float = 0.05
     weights = [(1 - v) * (1 - u), (1 - v) * u, v * (1 - u), v * u]
     # NaN where a corner is a hole: those are no surface, by the comparison.
     joined = np.maximum.reduce(corners) <= (1 + max_jump) * np.minimum.reduce(corners)
-    inverse = sum(weight / corner for weight, corner in zip(weights, corners, strict=True))
-    return np.where(joined, 1 / np.asarray(inverse), depth[np.ix_(near_rows, near_columns)])
+    inverse = np.zeros(shape)
+    for weight, corner in zip(weights, corners, strict=True):
+        inverse += weight / corner
+    nearest = depth[np.ix_(near_rows, near_columns)]
+    # Continued beyond the border, a steep enough slope would end at infinity.
+    with np.errstate(divide="ignore"):
+        return np.where(joined & (inverse > 0), 1 / inverse, nearest)
 
 
 def _places(old: int, new: int) -> tuple[NDArray[np.intp], Float, NDArray[np.intp]]:

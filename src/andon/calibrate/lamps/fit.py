@@ -107,7 +107,7 @@ class _Fit:
         self.mask = None if mask is None else mask_of(mask, self.view)
         self._check_response()
         self._drawn, self._progress = 0, progress
-        self._pictures = 2 + len(self.terms) * (2 if settings.response else 1)
+        self._pictures = 3 + len(self.terms) * (2 if settings.response else 1)
 
     def run(self) -> LampFit:
         """Fits, under another response once more if that is better."""
@@ -127,8 +127,9 @@ class _Fit:
         painter = Painter(
             self.prepared, settings.engine, settings.time_seconds, settings.view, self._step
         )
-        dark = painter.frame(self.terms, np.zeros((len(self.terms), 3)), "without lamps")
-        self.cells = self._cells(dark)
+        none = np.zeros((len(self.terms), 3))
+        dark = painter.frame(self.terms, none, "without lamps")
+        self.cells = self._cells(painter.frame(self.terms, none + 1, "with all lamps"))
         basis = painter.basis(self.terms, dark, self.cells)
         for _ in range(MOST_STEPS):
             problem = self._problem(basis)
@@ -146,10 +147,12 @@ class _Fit:
         if self._progress is not None:
             self._progress(self._drawn, self._pictures, what)
 
-    def _cells(self, dark: Frame) -> Cells:
-        """Cells of real surface that neither photograph leaves open what it is."""
-        surface, captured = dark.surface, dark.captured
+    def _cells(self, lit: Frame) -> Cells:
+        """Cells of what lamps light, no lamps themselves, where both photographs say how bright."""
+        surface, captured = lit.surface, lit.captured
         looked = surface.valid & ~surface.is_object & self.target.seen
+        if lit.bodies is not None:
+            looked &= ~(lit.bodies.cd_m2 > 0).any(axis=-1)
         if captured.clipped is not None:
             looked &= ~captured.clipped
         if self.mask is not None:

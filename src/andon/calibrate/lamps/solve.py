@@ -107,7 +107,9 @@ def noise_variance(linear: Float, /) -> Float:
 def solve(problem: Problem, /) -> Solution:
     """The amounts that explain the reference."""
     groups = _groups(problem)
-    amounts, robust = np.zeros(problem.pictures.shape[::2]), np.ones_like(problem.wanted)
+    amounts = np.zeros(problem.pictures.shape[::2])
+    # Cells at the white end wait for a first prediction.
+    robust = np.repeat(~problem.is_white[:, None], 3, axis=1).astype(np.float64)
     light = problem.wanted
     for round_ in range(MOST_ROUNDS):
         weights = _weights(problem, light) * robust
@@ -115,6 +117,7 @@ def solve(problem: Problem, /) -> Solution:
         light = problem.predicted(amounts)
         off = _residuals(problem, light) * np.sqrt(_weights(problem, light))
         robust = _robust(off, groups, problem, tukey=round_ >= HUBER_ROUNDS)
+        robust[problem.is_white[:, None] & (light >= problem.wanted)] = 0
         if round_ > HUBER_ROUNDS and np.abs(amounts - before).max() < END * amounts.max():
             break
     weights = _weights(problem, light) * robust

@@ -57,7 +57,7 @@ def _check_scale(knowledge: Knowledge) -> None:
         return
     raise InputError(
         "nothing that is stated has a size: the scale is undetermined",
-        remedy="add --length X1,Y1,X2,Y2=METRES, --at X,Y=METRES, --floor with --height, or --known",
+        remedy="add --length X1,Y1,X2,Y2=METRES, --at X,Y=METRES, --floor and --height, or --known",
     )
 
 
@@ -112,7 +112,7 @@ def _check_direction(problem: Problem) -> None:
 
 
 def _cost_of(problem: Problem) -> tuple[float, float]:
-    """(robust cost, relative relief of the picture) of the best fit; infinite where there is none."""
+    """(robust cost, relative relief) of the best fit; infinite where there is none."""
     try:
         found = _best(problem)
     except InputError:

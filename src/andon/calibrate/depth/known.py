@@ -80,7 +80,7 @@ def known_line(relative: RelativeDepth, known_m: Float, /) -> KnownLine:
     design = np.sqrt(weight)[:, None] * np.stack([x, -np.ones(count)], axis=1) / sigma
     information = design.T @ design * min(1.0, INDEPENDENT / count)
     outliers = float((np.abs(r - (alpha * x - ratio)) > OUTLIER * sigma).mean())
-    whiten = np.linalg.cholesky(information).T
+    whiten = np.asarray(np.linalg.cholesky(information).T, np.float64)
     return KnownLine(float(alpha), float(ratio), whiten, metres, chosen, outliers)
 
 

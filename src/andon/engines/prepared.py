@@ -8,13 +8,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from andon.capture.still import frame_from_picture
-from andon.composite.model import Ambient
+from andon.composite.model import Ambient, MeasuredSurface
 from andon.display.model import Exposure
 from andon.engines.baked_light import SceneBaked, baked_of, check_counted_once, undirected
 from andon.engines.checks import check_lamps
 from andon.engines.glare import SceneGlare, glare_of, with_clipped_light
 from andon.engines.glass import SceneGlass, glass_of
 from andon.engines.highlights import SceneHighlights, highlights_of
+from andon.engines.measured import measured_of, refuse_without_photograph
 from andon.engines.moment import Moment
 from andon.engines.photographless import (
     ambient_without_photograph,
@@ -50,7 +51,7 @@ __all__ = ["Prepared", "prepare"]
 LATER_TABLES: tuple[str, ...] = ()
 
 LATER_KEYS = {
-    "surface": ("response", "reflectance_map"),
+    "surface": ("response",),
     "capture": ("depth", "pose", "noise"),
 }
 
@@ -93,6 +94,7 @@ class Prepared:
     highlights : how virtual objects mirror, or None: nothing does.
     baked : illuminance maps, or None: there are none, or nobody asks for them.
     undirected : lamps of the scene whose direct light is not computed, since it is in the maps.
+    measured : view name → what is measured of the real surface there; without a view: nothing.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -112,6 +114,7 @@ class Prepared:
     highlights: SceneHighlights | None = None
     baked: SceneBaked | None = None
     undirected: frozenset[str] = frozenset()
+    measured: Mapping[str, MeasuredSurface] = field(default_factory=dict[str, MeasuredSurface])
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
@@ -152,14 +155,14 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
     scene = scene if drawn else scene.steady()
     probes, notes = probes_of(scene) if drawn else (None, ())
     seen = _photographed if scene.has_photograph else _all_virtual
-    frames, ambient, surface = seen(scene, probes, drawn)
+    frames, ambient, surface, measured = seen(scene, probes, drawn)
     virtual = _virtual_groups(scene, surface)
     lamps = (*resolve_lamps(scene.steady(), 0.0), *resolve_sources(scene, 0.0, virtual))
     if frames:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
     baked, about_maps = (
-        baked_of(scene, surface, lamps, frames, ambient, has_probes=probes is not None)
+        baked_of(scene, surface, lamps, frames, ambient, measured, has_probes=probes is not None)
         if drawn
         else (None, ())
     )
@@ -187,18 +190,20 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         highlights=highlights_of(scene, surface),
         baked=baked,
         undirected=undirected(scene),
+        measured=measured,
     )
 
 
-_Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel]
+_Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel, dict[str, MeasuredSurface]]
 
 
 def _all_virtual(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen:
     """Frames, light and surface of a scene without a photograph."""
+    refuse_without_photograph(scene)
     ambient = ambient_without_photograph(scene)
     lamps = resolve_lamps(scene.steady(), 0.0)
     frames = sky_frames(scene, lamps, white_cd_m2(scene, ambient, lamps)) if drawn else {}
-    return frames, ambient, virtual_surface(scene)
+    return frames, ambient, virtual_surface(scene), {}
 
 
 def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen:
@@ -230,7 +235,9 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
         for name, picture in pictures.items()
     }
     frames = {name: with_clipped_light(scene, frame) for name, frame in frames.items()}
-    return frames, ambient, replace(surface, notes=(*surface.notes, *notes))
+    measured, on_maps = measured_of(scene, views, frames, ambient)
+    surface = replace(surface, notes=(*surface.notes, *notes, *on_maps))
+    return frames, ambient, surface, measured
 
 
 def _virtual_groups(scene: Scene, surface: SurfaceModel) -> frozenset[str]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from andon.spaces import View
 
-__all__ = ["distorted_pixels", "undistort"]
+__all__ = ["captured_rays", "distorted_pixels", "undistort"]
 
 Float = NDArray[np.float64]
 
@@ -35,6 +35,26 @@ def distorted_pixels(view: View, /) -> Float:
     still = np.zeros(3)
     pixels, _ = cv2.projectPoints(points, still, still, matrix, np.array(view.distortion))
     return np.asarray(pixels, np.float64).reshape(*view.shape, 2)
+
+
+def captured_rays(view: View, /) -> Float:
+    """(H, W, 3) camera-frame rays with z = 1 of a pinhole's pixels as captured, lens and all.
+
+    OpenCV inverts the lens by fixed-point steps: 100 of them, or 1e-12 of the focal length.
+    """
+    if not view.distortion:
+        return view.rays_planar()
+    import cv2
+
+    matrix = np.array([[view.fx, 0, view.cx], [0, view.fy, view.cy], [0, 0, 1.0]])
+    until = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 100, 1e-12)
+    pixels = view.pixel_grid().reshape(-1, 1, 2)
+    points = cv2.undistortPointsIter(
+        pixels, matrix, np.array(view.distortion), np.eye(3), np.eye(3), until
+    )
+    rays = np.ones((*view.shape, 3))
+    rays[..., :2] = np.asarray(points).reshape(*view.shape, 2)
+    return rays
 
 
 def undistort(

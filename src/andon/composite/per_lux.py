@@ -57,10 +57,11 @@ def per_lux(
     frame: CameraFrame, ambient: Ambient, measured: MeasuredSurface | None = None, /
 ) -> Float:
     """Linear camera values (H, W, 3) that one lux more adds to each pixel of the real surface."""
-    shown = np.asarray(frame.linear, np.float64) / ambient.illuminance_lux
+    e0 = ambient.lux_of(frame.view.name)
+    shown = np.asarray(frame.linear, np.float64) / e0
     if measured is None or measured.reflectance is None:
         return shown
-    w = photograph_weight(ambient.illuminance_lux, frame.luminance_per_unit)
+    w = photograph_weight(e0, frame.luminance_per_unit)
     known = measured.reflectance / (np.pi * frame.luminance_per_unit)
     return w * shown + (1 - w) * known
 
@@ -70,12 +71,12 @@ def map_scale(reflectance: Float, frame: CameraFrame, ambient: Ambient, /) -> Fl
 
     1 for a channel where too few pixels tell.
     """
-    shown = np.asarray(frame.linear, np.float64)
-    w = photograph_weight(ambient.illuminance_lux, frame.luminance_per_unit)
+    shown, e0 = np.asarray(frame.linear, np.float64), ambient.lux_of(frame.view.name)
+    w = photograph_weight(e0, frame.luminance_per_unit)
     tells = (w >= STRONG) & (shown >= LEAST_SHOWN) & (reflectance >= LEAST_REFLECTANCE)
     if frame.clipped is not None:
         tells &= ~frame.clipped[..., None]
-    seen = np.pi * frame.luminance_per_unit * shown / ambient.illuminance_lux
+    seen = np.pi * frame.luminance_per_unit * shown / e0
     scale = np.ones(3)
     for c in np.flatnonzero(tells.mean(axis=(0, 1)) >= LEAST_SHARE):
         own = tells[..., c]

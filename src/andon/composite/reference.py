@@ -41,9 +41,9 @@ def relit_linear(
     Where light is taken away ΔE is negative; no light at all is the least that is left.
     """
     captured = np.asarray(frame.linear, np.float64)
-    dimming = np.asarray(ambient.dimming)
+    dimming, e0 = np.asarray(ambient.dimming), ambient.lux_of(frame.view.name)
     if ambient.dimming_mode == "linear" and measured is None:
-        return captured * np.maximum(dimming + added_lux / ambient.illuminance_lux, 0)
+        return captured * np.maximum(dimming + added_lux / e0, 0)
     if ambient.dimming_mode == "linear":
         dimmed = dimming * captured
     else:
@@ -77,6 +77,8 @@ def bodies_luminance(surface: Surface, lamps: Sequence[Lamp], /) -> Float:
     alone = np.zeros((*surface.view.shape, 3))
     if surface.body_id is not None:
         alone = np.where(surface.body_id[..., None] >= 0, surface.emitted_cd_m2, 0.0)
+    if surface.shell_cd_m2 is not None:
+        alone = alone + surface.shell_cd_m2
     return draw_lamps(alone, surface, lamps)
 
 
@@ -99,6 +101,8 @@ def compose(
     real = frame.luminance_per_unit * relit_linear(frame, ambient, added_lux, measured)
     virtual = object_luminance(surface, ambient, added_lux, standing_lux)
     luminance = np.where(surface.is_object[..., None], virtual, real)
+    if surface.shell_cd_m2 is not None:
+        luminance = luminance + surface.shell_cd_m2
     luminance = luminance if mirror is None else mirror(luminance)
     return draw_lamps(luminance, surface, lamps)
 

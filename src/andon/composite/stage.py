@@ -43,7 +43,7 @@ class CompositeStage:
         self.gpu, self.view, self.ambient, self.measured = gpu, view, ambient, measured
         has_reflectance = measured is not None and measured.reflectance is not None
         self.has_maps = (
-            ambient.illuminance_lux.ndim == 3 or ambient.dimming_mode == "paper" or has_reflectance
+            ambient.lux_of(view.name).ndim == 3 or ambient.dimming_mode == "paper" or has_reflectance
         )
         size = (view.width, view.height)
         self._captured = make_texture(gpu, "rgba16float", *size, label="captured")

@@ -33,10 +33,11 @@ def confidence_of_frame(frame: Frame, prepared: Prepared, /) -> Confidence:
     captured = frame.captured
     lux = np.asarray(frame.illuminance.lux, np.float64)
     linear = np.asarray(captured.linear, np.float64)
+    measured = prepared.measured.get(captured.view.name)
 
     def relit(light: Float) -> Float:
         changed: Any = light  # float64, so that steps of 16 bits are not lost
-        return relit_linear(replace(captured, linear=changed), prepared.ambient, lux)
+        return relit_linear(replace(captured, linear=changed), prepared.ambient, lux, measured)
 
     white = captured.luminance_per_unit
     spread = np.asarray(frame.luminance.cd_m2, np.float64) / white - relit(linear)

@@ -61,7 +61,7 @@ HALF_ROUNDINGS = 2 * 2.0**-12
 
 
 def dithered(frame: CameraFrame, /) -> CameraFrame:
-    """The frame with each value somewhere else in its step, so that unchanged light keeps its bytes.
+    """The frame with each value elsewhere in its step, so that unchanged light keeps its bytes.
 
     Black stays black (borders are), and clipped white white. Floats have no steps: their frame is
     returned as it is.

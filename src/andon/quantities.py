@@ -157,6 +157,10 @@ class Surface:
     body_id : (H, W) int32, which of the luminous bodies is seen, −1 elsewhere; None: nowhere.
     cover : (H, W) depth of what a small hole is taken to hide, of its farther rim; inf elsewhere.
         Virtual things behind it are not drawn; light is not added. None: holes hide nothing.
+    shell_id : (H, W) int32, of the luminous bodies: the real shell that a pixel of the photograph
+        shows, −1 elsewhere; None: nowhere.
+    shell_cd_m2 : (H, W, 3) float64, the light of real shells themselves, added to what the
+        photograph shows; 0 where a virtual thing is before it. None: there is none.
     """
 
     position: NDArray[np.float64]
@@ -170,6 +174,8 @@ class Surface:
     view: View
     body_id: NDArray[np.int32] | None = None
     cover: NDArray[np.float64] | None = None
+    shell_id: NDArray[np.int32] | None = None
+    shell_cd_m2: NDArray[np.float64] | None = None
 
     @classmethod
     def of_points(cls, position: NDArray[np.float64], normal: NDArray[np.float64], /) -> Surface:

@@ -129,9 +129,7 @@ class Frame:
         """How far each pixel may be trusted, and why not; made when it is first asked for."""
         from andon.engines.confidence import confidence_of_frame
 
-        if self.prepared is None:
-            raise InputError("is missing: confidence needs a drawn frame", field="frame.prepared")
-        return confidence_of_frame(self, self.prepared)
+        return confidence_of_frame(self)
 
 
 class Renderer:

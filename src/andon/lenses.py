@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from andon.spaces import View
 
-__all__ = ["distorted_pixels", "undistort"]
+__all__ = ["captured_rays", "distorted_pixels", "undistort"]
 
 Float = NDArray[np.float64]
+
+INVERSION_STEPS = 50
 
 
 def distorted_pixels(view: View, /) -> Float:
@@ -28,13 +30,34 @@ def distorted_pixels(view: View, /) -> Float:
         k1, k2, k3, k4 = view.distortion
         factor = 1 + square * (k1 + square * (k2 + square * (k3 + square * k4)))
         return x * factor[..., None] * (view.fx, view.fy) + (view.cx, view.cy)
+    return _projected(view.rays_planar(), view) * (view.fx, view.fy) + (view.cx, view.cy)
+
+
+def captured_rays(view: View, /) -> Float:
+    """(H, W, 3) camera-frame rays with z = 1 of a pinhole's pixels as captured, lens and all.
+
+    Inverted by fixed-point steps to 1e-12 of the focal length, or 50 of them: beyond the edge of
+    a strong lens's model there is no ray, and what is given there means nothing.
+    """
+    rays = view.rays_planar()
+    target = rays[..., :2].copy()
+    for _ in range(INVERSION_STEPS if view.distortion else 0):
+        error = _projected(rays, view) - target
+        rays[..., :2] -= error
+        if np.abs(error).max() < 1e-12:
+            break
+    return rays
+
+
+def _projected(rays: Float, view: View) -> Float:
+    """(H, W, 2) image of rays (H, W, 3) with z = 1 behind a pinhole's lens, in focal lengths."""
     import cv2
 
-    matrix = np.array([[view.fx, 0, view.cx], [0, view.fy, view.cy], [0, 0, 1.0]])
-    points = view.rays_planar().reshape(-1, 1, 3)
     still = np.zeros(3)
-    pixels, _ = cv2.projectPoints(points, still, still, matrix, np.array(view.distortion))
-    return np.asarray(pixels, np.float64).reshape(*view.shape, 2)
+    points, _ = cv2.projectPoints(
+        rays.reshape(-1, 1, 3), still, still, np.eye(3), np.array(view.distortion)
+    )
+    return np.asarray(points, np.float64).reshape(*rays.shape[:2], 2)
 
 
 def undistort(

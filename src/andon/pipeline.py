@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -37,6 +38,7 @@ from andon.spaces import View
 from andon.transport.baked.model import BakedSeen
 
 if TYPE_CHECKING:
+    from andon.composite.confidence import Confidence
     from andon.engines.prepared import Prepared
     from andon.lamps import Lamp
 
@@ -104,6 +106,7 @@ class Frame:
     highlights : mirrored lamps alone, cd/m²; None where nothing mirrors.
     seen : what the eye gets through an optical see-through display; None for a video one.
     baked : what the illuminance maps give, which `illuminance` holds; None without [baked].
+    prepared : what it was drawn of.
     """
 
     captured: CameraFrame
@@ -119,6 +122,16 @@ class Frame:
     glass: Layered | None = None
     highlights: Luminance | None = None
     baked: BakedSeen | None = None
+    prepared: Prepared | None = field(default=None, repr=False)
+
+    @cached_property
+    def confidence(self) -> Confidence:
+        """How far each pixel may be trusted, and why not; made when it is first asked for."""
+        from andon.engines.confidence import confidence_of_frame
+
+        if self.prepared is None:
+            raise InputError("is missing: confidence needs a drawn frame", field="frame.prepared")
+        return confidence_of_frame(self, self.prepared)
 
 
 class Renderer:
@@ -202,7 +215,7 @@ class Renderer:
         report = self._report(captured, surface, layered, baked)
         seen = self._engine.read_seen(captured, *handles[2:])
         return Frame(
-            captured,
+            self.prepared.captured(captured.view.name),
             surface,
             illuminance,
             luminance,
@@ -215,6 +228,7 @@ class Renderer:
             layered,
             self._engine.read_highlights(captured),
             baked,
+            self.prepared,
         )
 
     def picture(self, time_seconds: float = 0.0, view: str | None = None) -> NDArray[np.uint8]:

@@ -64,6 +64,7 @@ class CameraFrame:
     luminance_per_unit : cd/m² per linear unit, > 0.
     time_seconds : since the start of the session.
     clipped : (H, W) bool, a channel at the end of the sensor's range.
+    code_step : step of the sensor's codes as encoded values, 1/255 or 1/65535; 0: floats.
     """
 
     linear: NDArray[np.float32]
@@ -72,6 +73,7 @@ class CameraFrame:
     luminance_per_unit: float = 1.0
     time_seconds: float = 0.0
     clipped: NDArray[np.bool_] | None = None
+    code_step: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -155,6 +157,10 @@ class Surface:
     body_id : (H, W) int32, which of the luminous bodies is seen, −1 elsewhere; None: nowhere.
     cover : (H, W) depth of what a small hole is taken to hide, of its farther rim; inf elsewhere.
         Virtual things behind it are not drawn; light is not added. None: holes hide nothing.
+    shell_id : (H, W) int32, of the luminous bodies: the real shell that a pixel of the photograph
+        shows, −1 elsewhere; None: nowhere.
+    shell_cd_m2 : (H, W, 3) float64, the light of real shells themselves, added to what the
+        photograph shows; 0 where a virtual thing is before it. None: there is none.
     """
 
     position: NDArray[np.float64]
@@ -168,6 +174,8 @@ class Surface:
     view: View
     body_id: NDArray[np.int32] | None = None
     cover: NDArray[np.float64] | None = None
+    shell_id: NDArray[np.int32] | None = None
+    shell_cd_m2: NDArray[np.float64] | None = None
 
     @classmethod
     def of_points(cls, position: NDArray[np.float64], normal: NDArray[np.float64], /) -> Surface:

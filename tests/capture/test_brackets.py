@@ -12,7 +12,8 @@ from andon.capture.brackets import (
     check_exposures,
     common_rectangle,
 )
-from andon.capture.merge import merge, recover_response
+from andon.capture.merge import merge
+from andon.capture.recovery import recover_curves
 from andon.errors import InputError
 from andon.files.exposures import read_exposures
 from andon.files.pictures import read_picture
@@ -93,7 +94,7 @@ def test_the_unit_is_that_of_the_middle_photograph():
 
 def test_the_response_comes_back():
     taken = bracket(light(), [2.0**-k for k in range(8)], response=PLEASING)
-    curve = recover_response(taken)
+    curve = recover_curves(taken).curves
     assert (np.diff(curve, axis=0) >= 0).all()
     assert (curve[128] == 0).all()
     codes = np.arange(20, 240)
@@ -250,7 +251,7 @@ def test_exposures_that_tell_nothing_are_refused(seconds, words):
 
 def test_pictures_that_make_no_bracket_are_refused():
     grey = np.full((8, 10, 3), 90, np.uint8)
-    with pytest.raises(InputError, match="one photograph has nothing to be fused with"):
+    with pytest.raises(InputError, match="is one photograph, and no series of exposures"):
         bracket_of(["a.png"], [grey])
     with pytest.raises(InputError, match=r"b\.png: is 8×10 px but a\.png is 10×8"):
         bracket_of(["a.png", "b.png"], [grey, grey.swapaxes(0, 1)])

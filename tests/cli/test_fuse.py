@@ -96,7 +96,7 @@ def test_hand_held_photographs_are_aligned_and_cropped(capfd, tmp_path, monkeypa
 
 REFUSED = [
     (["-o", "o.png"], "PHOTOS: are missing"),
-    ([NAMES[0], "-o", "o.png"], "one photograph has nothing to be fused with"),
+    ([NAMES[0], "-o", "o.png"], "is one photograph, and no series of exposures"),
     ([*NAMES, "-o", "o.gif"], "must end in .png, .jpg, .jpeg, .exr, .hdr"),
     ([*NAMES, "-o", "o.exr"], "exposure times are not known"),
     ([*NAMES, "-o", "o.exr", "--seconds", "1,2"], "must be 3 exposures"),

@@ -206,6 +206,10 @@ GAPS_JSON = (
     b'[{"azimuth_degrees": 3.5, "elevation_degrees": 12.0, "diameter_degrees": 0.2}, '
     b'{"azimuth_degrees": -4, "elevation_degrees": 9.5, "diameter_degrees": 0.35}]'
 )
+HARMONICS_JSON = (
+    b'{"coefficients_cd_m2": [[282, 270, 255], [35, 30, 24], [-8, -7, -6], [12, 11, 9], [1, 1, 1], '
+    b"[2, 2, 2], [-3, -3, -2], [0, 0.5, 0], [4, 4, 3]]}"
+)
 EXPOSURE_LIST = b"""# Filename exposure 1/shutter_speed f/stop gain(db) ND_filters
 bright.png 2 0.5 8 0 0
 middle.png 0.5 2 8 0 0
@@ -392,4 +396,5 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "geometry.exr": _map("geometry-0.exr"),
     "illuminance.exr": _map("light-1-0-1.exr"),
     "radiance.rad": _rad,
+    "harmonics.json": _write(HARMONICS_JSON),
 }

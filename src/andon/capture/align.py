@@ -32,7 +32,15 @@ from numpy.typing import NDArray
 from andon.capture.brackets import Bracket
 from andon.errors import InputError
 
-__all__ = ["ALIGNMENTS", "Alignment", "Move", "align"]
+__all__ = [
+    "ALIGNMENTS",
+    "Alignment",
+    "Move",
+    "align",
+    "at_scale",
+    "corner_motion_px",
+    "moved_picture",
+]
 
 Value = TypeVar("Value", np.uint8, np.float32)
 Alignment = Literal["auto", "none", "shift", "ecc"]
@@ -90,9 +98,9 @@ def align(bracket: Bracket, method: Alignment, /) -> tuple[Bracket, tuple[Move, 
                 moves[far] = _product(step, moves[near])
     found = [moves.get(i, STILL) for i in range(len(bracket.codes))]
     if method == "auto":
-        found = [STILL if _corner_motion(m, shape) < STILL_PX else m for m in found]
+        found = [STILL if corner_motion_px(m, shape) < STILL_PX else m for m in found]
     codes, seen = zip(
-        *(_moved(c, s, m) for c, s, m in zip(bracket.codes, bracket.seen, found, strict=True)),
+        *(moved_picture(c, s, m) for c, s, m in zip(bracket.codes, bracket.seen, found, strict=True)),
         strict=True,
     )
     return replace(bracket, codes=codes, seen=seen), tuple(_described(m, shape) for m in found)
@@ -118,7 +126,7 @@ class _Pair:
     def agreement(self, matrix: NDArray[np.float64]) -> float:
         """Correlation of the ranks with the second photograph moved by `matrix`, −1…1."""
         near, far = self.ranks
-        moved, seen = _moved(far, self.seen[1], _at_scale(matrix, self.scale))
+        moved, seen = moved_picture(far, self.seen[1], at_scale(matrix, self.scale))
         both = self.seen[0] & seen
         if both.sum() < LEAST_SHARE * both.size:
             return -1.0
@@ -172,14 +180,14 @@ def _shifts(pair: _Pair) -> list[NDArray[np.float64]]:
 def _by_correlation(pair: _Pair, start: NDArray[np.float64]) -> NDArray[np.float64]:
     import cv2
 
-    warp = _at_scale(start, pair.scale).astype(np.float32)
+    warp = at_scale(start, pair.scale).astype(np.float32)
     criteria = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, ECC_STEPS, ECC_END)
     # OpenCV's mask is of the second picture.
     mask = pair.seen[1].astype(np.uint8)
     _, found = cv2.findTransformECC(
         pair.ranks[0], pair.ranks[1], warp, cv2.MOTION_EUCLIDEAN, criteria, mask, 5
     )
-    return _at_scale(np.asarray(found, np.float64), 1 / pair.scale)
+    return at_scale(np.asarray(found, np.float64), 1 / pair.scale)
 
 
 def _scaled(grey: NDArray[np.uint8], scale: float) -> NDArray[np.uint8]:
@@ -192,7 +200,7 @@ def _scaled(grey: NDArray[np.uint8], scale: float) -> NDArray[np.uint8]:
     )
 
 
-def _at_scale(matrix: NDArray[np.float64], scale: float) -> NDArray[np.float64]:
+def at_scale(matrix: NDArray[np.float64], scale: float, /) -> NDArray[np.float64]:
     """The same motion in a picture scaled by `scale`; pixel centres are at integers."""
     linear, half = matrix[:, :2], np.full(2, 0.5)
     # x' + ½ = scale·(x + ½): the middle of the first pixel is not the picture's corner.
@@ -213,15 +221,17 @@ def _product(second: NDArray[np.float64], first: NDArray[np.float64]) -> NDArray
     return whole[:2]
 
 
-def _corner_motion(matrix: NDArray[np.float64], shape: tuple[int, ...]) -> float:
+def corner_motion_px(matrix: NDArray[np.float64], shape: tuple[int, ...], /) -> float:
+    """How far a motion (2, 3) moves the corner of a picture (height, width) that it moves most."""
     height, width = shape
     corners = np.array([[0, 0], [width - 1, 0], [0, height - 1], [width - 1, height - 1]], float)
     return float(np.linalg.norm(corners @ matrix[:, :2].T + matrix[:, 2] - corners, axis=1).max())
 
 
-def _moved(
-    codes: NDArray[Value], seen: NDArray[np.bool_], matrix: NDArray[np.float64]
+def moved_picture(
+    codes: NDArray[Value], seen: NDArray[np.bool_], matrix: NDArray[np.float64], /
 ) -> tuple[NDArray[Value], NDArray[np.bool_]]:
+    """A picture and what it saw, looked up at `matrix` (2, 3) × pixel."""
     import cv2
 
     if (matrix == STILL).all():

@@ -75,7 +75,7 @@ def bracket_of(
     """
     if len(codes) < 2:
         raise InputError(
-            "one photograph has nothing to be fused with",
+            "is one photograph, and no series of exposures",
             file=names[0] if names else None,
             remedy="name two or more of one scene, with different exposures",
         )

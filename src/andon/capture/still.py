@@ -60,13 +60,16 @@ def frame_from_picture(
     if not np.isfinite(linear).all():
         bad = int(np.count_nonzero(~np.isfinite(linear).all(axis=-1)))
         raise InputError(f"has {bad} pixels that are NaN or infinite", file=file)
-    clipped = np.zeros(view.shape, bool)
+    clipped, code_step = np.zeros(view.shape, bool), 0.0
     if picture.encoding == "srgb":
         top = np.iinfo(picture.values.dtype).max
+        code_step = 1 / top
         clipped = np.asarray((picture.values >= top - CLIPPED_CODES).any(axis=-1), bool)
     if undistorted and view.distortion:
         linear = np.nan_to_num(undistort(linear, view))
         codes = np.asarray(clipped, np.uint8)
         clipped = undistort(codes, view, method="nearest") > 0
     view = replace(view, distortion=())
-    return CameraFrame(linear, view, response, luminance_per_unit, time_seconds, clipped)
+    return CameraFrame(
+        linear, view, response, luminance_per_unit, time_seconds, clipped, code_step
+    )

@@ -95,6 +95,13 @@ class RelightOptions:
         Path | None,
         typer.Option(help="PNG: where no illuminance map of [baked] sees the surface, in magenta."),
     ] = None
+    confidence: Annotated[
+        Path | None,
+        typer.Option(
+            help="How far each pixel may be trusted, and why not. PNG: expected error and causes in "
+            "false colours; EXR: numbers."
+        ),
+    ] = None
     seen: Annotated[
         Path | None,
         typer.Option(

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from andon.cli.confidence import check_confidence, notes_on_confidence, write_confidence
 from andon.cli.console import check_writable, note, print_report
 from andon.cli.options import RelightOptions
 from andon.cli.seen import check_seen, notes_on_seen, write_seen
@@ -34,6 +35,7 @@ def run(options: RelightOptions) -> None:
     check_view(scene, options.view)
     check_seen(options.seen, scene)
     check_uncovered(options.uncovered, scene)
+    check_confidence(options.confidence, scene)
     for path in _outputs(options):
         refuse_photograph(path, scene)
     with named_as_typed(options, len(scene.lamp) - len(options.lamps or ()), scene.file):
@@ -51,11 +53,15 @@ def run(options: RelightOptions) -> None:
         write_illuminance(path, frame.illuminance, frame.surface.valid)
     if options.uncovered is not None and frame.baked is not None:
         write_uncovered(options.uncovered, frame.image.rgb, frame.baked)
+    about_trust: list[str] = []
+    if options.confidence is not None:
+        write_confidence(options.confidence, frame.confidence)
+        about_trust = notes_on_confidence(frame.confidence)
     lines = notes_on_time(options.time_seconds, scene.scene.duration_seconds)
     about = notes_on(
         frame, renderer.prepared, options.time_seconds, has_photograph=scene.has_photograph
     )
-    for line in (*lines, *about, *notes_on_seen(frame.seen)):
+    for line in (*lines, *about, *notes_on_seen(frame.seen), *about_trust):
         note(line)
     depth = depth_text(frame.surface, has_photograph=scene.has_photograph)
     white = white_text(scene, renderer.prepared)
@@ -66,8 +72,9 @@ def run(options: RelightOptions) -> None:
 
 
 def _outputs(options: RelightOptions) -> list[Path]:
-    more = [path for path in (options.seen, options.uncovered) if path is not None]
-    return [options.out, *(options.illuminance_maps or ()), *more]
+    more = (options.seen, options.uncovered, options.confidence)
+    named = [path for path in more if path is not None]
+    return [options.out, *(options.illuminance_maps or ()), *named]
 
 
 def _refuse_overwriting(options: RelightOptions) -> None:

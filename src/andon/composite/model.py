@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -18,6 +19,8 @@ class Ambient:
     Attributes
     ----------
     illuminance_lux : E0, (3,) or (H, W, 3), > 0.
+    views : view name → (H, W, 3) E0 of its pixels, where views differ; `illuminance_lux` is then
+        (3,), the mean of all.
     dimming : (3,) ≥ 0, share of E0 that is left.
     dimming_mode : ``linear`` (physics), or ``paper``: the paper scales the *encoded* RGB, which
         darkens more than its number says and shifts colours.
@@ -26,6 +29,11 @@ class Ambient:
     illuminance_lux: NDArray[np.float64] = field(default_factory=lambda: np.ones(3))
     dimming: tuple[float, float, float] = (1.0, 1.0, 1.0)
     dimming_mode: Literal["linear", "paper"] = "linear"
+    views: Mapping[str, NDArray[np.float64]] = field(default_factory=dict[str, NDArray[np.float64]])
+
+    def lux_of(self, view_name: str, /) -> NDArray[np.float64]:
+        """E0 of the pixels of a view, (3,) or (H, W, 3)."""
+        return self.views.get(view_name, self.illuminance_lux)
 
     @property
     def mean_lux(self) -> NDArray[np.float64]:

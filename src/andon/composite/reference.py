@@ -34,11 +34,11 @@ def relit_linear(frame: CameraFrame, ambient: Ambient, added_lux: Float, /) -> F
     Where light is taken away ΔE is negative; no light at all is the least that is left.
     """
     captured = np.asarray(frame.linear, np.float64)
-    dimming = np.asarray(ambient.dimming)
+    dimming, e0 = np.asarray(ambient.dimming), ambient.lux_of(frame.view.name)
     if ambient.dimming_mode == "linear":
-        return captured * np.maximum(dimming + added_lux / ambient.illuminance_lux, 0)
+        return captured * np.maximum(dimming + added_lux / e0, 0)
     dimmed = frame.response.decode(dimming * frame.response.encode(captured))
-    return np.maximum(dimmed + captured * (added_lux / ambient.illuminance_lux), 0)
+    return np.maximum(dimmed + captured * (added_lux / e0), 0)
 
 
 def unlit_linear(frame: CameraFrame, ambient: Ambient, /) -> Float:
@@ -65,6 +65,8 @@ def bodies_luminance(surface: Surface, lamps: Sequence[Lamp], /) -> Float:
     alone = np.zeros((*surface.view.shape, 3))
     if surface.body_id is not None:
         alone = np.where(surface.body_id[..., None] >= 0, surface.emitted_cd_m2, 0.0)
+    if surface.shell_cd_m2 is not None:
+        alone = alone + surface.shell_cd_m2
     return draw_lamps(alone, surface, lamps)
 
 
@@ -86,6 +88,8 @@ def compose(
     real = frame.luminance_per_unit * relit_linear(frame, ambient, added_lux)
     virtual = object_luminance(surface, ambient, added_lux, standing_lux)
     luminance = np.where(surface.is_object[..., None], virtual, real)
+    if surface.shell_cd_m2 is not None:
+        luminance = luminance + surface.shell_cd_m2
     luminance = luminance if mirror is None else mirror(luminance)
     return draw_lamps(luminance, surface, lamps)
 

@@ -39,7 +39,7 @@ class CompositeStage:
         taking: NDArray[np.uint8] | None = None,
     ) -> None:
         self.gpu, self.view, self.ambient = gpu, view, ambient
-        self.has_maps = ambient.illuminance_lux.ndim == 3 or ambient.dimming_mode == "paper"
+        self.has_maps = ambient.lux_of(view.name).ndim == 3 or ambient.dimming_mode == "paper"
         size = (view.width, view.height)
         self._captured = make_texture(gpu, "rgba16float", *size, label="captured")
         per_lux = size if self.has_maps else (1, 1)
@@ -66,7 +66,7 @@ class CompositeStage:
         linear = np.asarray(frame.linear, np.float64)
         if self.has_maps:
             dimming = np.asarray(self.ambient.dimming)
-            per_lux = linear / self.ambient.illuminance_lux
+            per_lux = linear / self.ambient.lux_of(self.view.name)
             self._per_lux.write(_with_alpha(per_lux))
             if self.ambient.dimming_mode == "linear":
                 linear = linear * dimming

@@ -11,7 +11,7 @@ from andon.display.fusion import fused_codes
 from andon.display.model import Exposure
 from andon.responses import Response
 
-__all__ = ["SHOULDER_START", "encode", "tone_curve"]
+__all__ = ["SHOULDER_START", "encode", "shown_codes", "tone_curve"]
 
 # Below this share of white the shoulder is the identity, so that most of a picture is untouched.
 SHOULDER_START = 0.6
@@ -50,6 +50,18 @@ def encode(
     """(H, W, 3) uint8 from luminance (H, W, 3) in cd/m²; rounded to nearest."""
     if exposure.tone == "fusion":
         return fused_codes(luminance_cd_m2, exposure, response, luminance_per_unit)
+    codes = shown_codes(luminance_cd_m2, exposure, response, luminance_per_unit)
+    return np.asarray(codes + 0.5, np.uint8)
+
+
+def shown_codes(
+    luminance_cd_m2: NDArray[Any],
+    exposure: Exposure,
+    response: Response,
+    luminance_per_unit: float,
+    /,
+) -> NDArray[np.float64]:
+    """(H, W, 3) in [0, 255], not rounded, of `encode`; of any tone but ``fusion``."""
     scale = exposure.units_per_cd_m2 or 1 / luminance_per_unit
     encoded = response.encode(tone_curve(luminance_cd_m2 * scale, exposure.tone))
-    return np.asarray(np.clip(encoded, 0, 1) * 255 + 0.5, np.uint8)
+    return np.asarray(np.clip(encoded, 0, 1) * 255, np.float64)

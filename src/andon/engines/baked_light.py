@@ -280,7 +280,7 @@ def _reflectance(frames: Mapping[str, CameraFrame], ambient: Ambient) -> str:
         [
             name,
             frame.view,
-            np.pi * frame.luminance_per_unit * frame.linear / ambient.illuminance_lux,
+            np.pi * frame.luminance_per_unit * frame.linear / ambient.lux_of(name),
         ]
         for name, frame in frames.items()
     ]

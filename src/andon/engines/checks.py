@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,8 @@ def check_lamps(
     """Refuses lamps that cannot light this surface."""
     is_mesh = scene.surface is not None and scene.surface.mesh is not None
     walls = surface.real if scene.has_photograph else _first_object(surface)
+    # A lamp stands inside its shade, which is one of these walls.
+    shaded = {table.name for table in scene.lamp if _has_real_shell(table)}
     for lamp in lamps:
         if not isinstance(lamp, PointLamp | AreaLamp):
             continue
@@ -32,7 +36,8 @@ def check_lamps(
                 remedy="use directional, sky or hemisphere, or give a depth or a mesh",
             )
         # Areas may be let into a wall; points may not.
-        if is_mesh and isinstance(lamp, PointLamp) and is_buried(lamp.position_m, eye, walls):
+        may_be_inside = not isinstance(lamp, PointLamp) or lamp.owner in shaded
+        if is_mesh and not may_be_inside and is_buried(lamp.position_m, eye, walls):
             x, y, z = lamp.position_m
             raise InputError(
                 f"the lamp {lamp.name!r} at ({x:g}, {y:g}, {z:g}) is inside a wall",
@@ -40,6 +45,11 @@ def check_lamps(
                 field=f"{_place(scene, lamp)}.position",
                 remedy="move it into the space that the camera sees",
             )
+
+
+def _has_real_shell(table: Any) -> bool:
+    shell = getattr(table, "shell", None)
+    return shell is not None and shell.real
 
 
 def _first_object(surface: SurfaceModel) -> Geometry:

@@ -225,6 +225,6 @@ def _light(frame: CameraFrame, prepared: Prepared) -> NDArray[np.float32]:
         dimmed = dimming * linear
     else:
         dimmed = frame.response.decode(dimming * frame.response.encode(linear))
-    reflectance = np.pi * frame.luminance_per_unit * linear / ambient.illuminance_lux
+    reflectance = np.pi * frame.luminance_per_unit * linear / ambient.lux_of(frame.view.name)
     light = np.concatenate([frame.luminance_per_unit * dimmed, reflectance], axis=-1)
     return np.maximum(light, 0).astype(np.float32)

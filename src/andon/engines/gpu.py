@@ -67,6 +67,7 @@ class GpuEngine:
             silent=frozenset(lamp.name for lamp in self.start.lamps)
             - frozenset(lamp.name for lamp in self.start.direct_lamps),
             balls=prepared.balls,
+            shells=frozenset() if prepared.shells is None else prepared.shells.names,
         )
         self.finishes: highlights.FinishBuffers | None = None
         self.lamps_mirrored = ""

@@ -49,7 +49,10 @@ class GpuView:
         self.has_lamps = False
         view = frame.view
         start = engine.start
-        self.surface = SurfaceStage(gpu, prepared.surface, view, start.bodies, start.movers)
+        shells = None if prepared.shells is None else prepared.shells.views[view.name]
+        self.surface = SurfaceStage(
+            gpu, prepared.surface, view, start.bodies, start.movers, shells
+        )
         seen = self.surface.surface
         self.composite = composite.CompositeStage(
             gpu,

@@ -13,7 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from andon.composite.model import Ambient
-from andon.engines.reading import ambient_of, response_of, view_names_of, view_of
+from andon.engines.ambient_light import stated_ambient
+from andon.engines.reading import response_of, view_names_of, view_of
 from andon.errors import InputError
 from andon.lamps import DirectionalLamp, HemisphereLamp, Lamp, SkyLamp
 from andon.quantities import CameraFrame, photometric
@@ -61,6 +62,8 @@ def ambient_without_photograph(scene: Scene, /) -> Ambient:
     for key, remedy in (
         ("map", "state ambient.illuminance_lux"),
         ("probes", "leave it out: without a photograph probes light everything that is drawn"),
+        ("harmonics", "state ambient.illuminance_lux"),
+        ("rest_lux", "state ambient.illuminance_lux"),
         ("source", "make them [[lamp]]: without a photograph they light the scene themselves"),
     ):
         if getattr(table, key):
@@ -70,7 +73,7 @@ def ambient_without_photograph(scene: Scene, /) -> Ambient:
                 field=f"ambient.{key}",
                 remedy=remedy,
             )
-    return ambient_of(scene, {})
+    return stated_ambient(scene)
 
 
 def white_cd_m2(scene: Scene, ambient: Ambient, lamps: Sequence[Lamp], /) -> float:

@@ -7,9 +7,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from andon.capture.dither import dithered
 from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
 from andon.display.model import Exposure
+from andon.engines.ambient_light import ambient_of
 from andon.engines.baked_light import SceneBaked, baked_of, check_counted_once, undirected
 from andon.engines.checks import check_lamps
 from andon.engines.glare import SceneGlare, glare_of, with_clipped_light
@@ -21,9 +23,9 @@ from andon.engines.photographless import (
     sky_frames,
     white_cd_m2,
 )
-from andon.engines.probes import SceneProbes, ambient_of_probes, changed_since_bake, probes_of
+from andon.engines.probes import SceneProbes, changed_since_bake, probes_of
+from andon.engines.real_shells import RealShells, real_shells
 from andon.engines.reading import (
-    ambient_of,
     exposure_of,
     glow_of,
     luminance_per_unit_of,
@@ -75,7 +77,7 @@ class Prepared:
 
     Attributes
     ----------
-    frames : view name → captured light; one or two views.
+    frames : view name → the light that is relit; one or two views.
     surface : geometry of the scene.
     ambient : the light of the photograph.
     lamps : time in seconds → the lamps of that moment; always the same names and kinds.
@@ -93,6 +95,8 @@ class Prepared:
     highlights : how virtual objects mirror, or None: nothing does.
     baked : illuminance maps, or None: there are none, or nobody asks for them.
     undirected : lamps of the scene whose direct light is not computed, since it is in the maps.
+    shells : those of the bodies that stand in the photograph, or None.
+    undithered : view name → what was captured, where `frames` are dithered.
     """
 
     frames: Mapping[str, CameraFrame]
@@ -112,6 +116,12 @@ class Prepared:
     highlights: SceneHighlights | None = None
     baked: SceneBaked | None = None
     undirected: frozenset[str] = frozenset()
+    shells: RealShells | None = None
+    undithered: Mapping[str, CameraFrame] = field(default_factory=dict[str, CameraFrame])
+
+    def captured(self, view_name: str) -> CameraFrame:
+        """What the camera of a view delivered."""
+        return self.undithered.get(view_name, self.frames[view_name])
 
     def at(self, time_seconds: float) -> Moment:
         """All that moves, at a time."""
@@ -136,7 +146,8 @@ class Prepared:
             for part, mover in zip(moment.movers, surface.movers, strict=True)
             if mover.casts_shadow
         ]
-        groups = [(REAL, surface.occluder.geometry), (OBJECTS, surface.casters)]
+        real = [(REAL, surface.occluder.geometry)] if self.shells is None else self.shells.groups
+        groups = [*real, (OBJECTS, surface.casters)]
         groups += [(MOVERS, merged(*moving))] if moving else []
         groups += [(body.name, body.geometry) for body in moment.bodies]
         return Casters(tuple(groups))
@@ -164,16 +175,16 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         else (None, ())
     )
     check_counted_once(scene, probes, surface)
+    shells = real_shells(surface, frames, resolve_bodies(scene.steady(), 0.0))
     notes = (*notes, *changed_since_bake(scene, probes, surface, ambient, lamps), *about_maps)
     glass = glass_of(scene, frames, surface, ambient, lamps, probes) if frames else None
+    drawn_frames, about_steps = _with_noise(scene, frames)
+    notes = (*notes, *about_steps)
     return Prepared(
-        frames=frames,
+        frames=drawn_frames,
         surface=replace(surface, notes=(*surface.notes, *notes)),
         ambient=ambient,
-        lamps=lambda time_seconds: (
-            *resolve_lamps(scene, time_seconds),
-            *resolve_sources(scene, time_seconds, virtual),
-        ),
+        lamps=_lamps_of(scene, virtual, shells),
         bodies=lambda time_seconds: resolve_bodies(scene, time_seconds),
         exposure=exposure_of(scene),
         glow=glow_of(scene),
@@ -187,7 +198,20 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         highlights=highlights_of(scene, surface),
         baked=baked,
         undirected=undirected(scene),
+        shells=shells,
+        undithered=frames if scene.display.dither else {},
     )
+
+
+def _lamps_of(
+    scene: Scene, virtual: frozenset[str], shells: RealShells | None
+) -> Callable[[float], tuple[Lamp, ...]]:
+    def lamps(time_seconds: float) -> tuple[Lamp, ...]:
+        own = resolve_lamps(scene, time_seconds)
+        all_ = (*own, *resolve_sources(scene, time_seconds, virtual))
+        return all_ if shells is None else shells.shining(all_)
+
+    return lamps
 
 
 _Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel]
@@ -206,18 +230,14 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
     pictures = read_pictures(scene)
     views = {name: view_of(scene, name, picture.shape) for name, picture in pictures.items()}
     surface = load_surface(scene, views)
-    notes: tuple[str, ...] = ()
-    if scene.ambient is not None and scene.ambient.probes:
-        if not drawn:
-            raise InputError(
-                "is light that a bake does not have yet",
-                file=scene.file,
-                field="ambient.probes",
-                remedy="state ambient.illuminance_lux for the bake",
-            )
-        ambient, notes = ambient_of_probes(scene, probes, surface, views)
-    else:
-        ambient = ambient_of(scene, views)
+    if not drawn and scene.ambient is not None and scene.ambient.probes:
+        raise InputError(
+            "is light that a bake does not have yet",
+            file=scene.file,
+            field="ambient.probes",
+            remedy="state ambient.illuminance_lux for the bake",
+        )
+    ambient, notes = ambient_of(scene, views, surface, probes)
     per_unit = luminance_per_unit_of(scene, ambient)
     frames = {
         name: frame_from_picture(
@@ -233,9 +253,21 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
     return frames, ambient, replace(surface, notes=(*surface.notes, *notes))
 
 
+def _with_noise(
+    scene: Scene, frames: dict[str, CameraFrame]
+) -> tuple[dict[str, CameraFrame], tuple[str, ...]]:
+    """The frames, dithered where the scene asks for it, and what to say of it."""
+    if not scene.display.dither:
+        return frames, ()
+    notes: tuple[str, ...] = ()
+    if not any(frame.code_step for frame in frames.values()):
+        notes = ("display.dither changes nothing: light in floats has no steps",)
+    return {name: dithered(frame) for name, frame in frames.items()}, notes
+
+
 def _virtual_groups(scene: Scene, surface: SurfaceModel) -> frozenset[str]:
     """Caster groups that the photograph did not have: virtual objects, and bodies of lamps."""
-    bodies = [body.name for body in resolve_bodies(scene, 0.0)]
+    bodies = [body.name for body in resolve_bodies(scene, 0.0) if not body.real]
     still = [OBJECTS] if len(surface.casters.triangles) else []
     moving = [MOVERS] if any(mover.casts_shadow for mover in surface.movers) else []
     glass = [GLASS] if any(table.shape == "sphere" for table in scene.glass) else []

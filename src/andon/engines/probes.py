@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from shlex import quote
 from typing import Literal
@@ -19,8 +19,6 @@ from andon.lamps import Lamp
 from andon.quantities import Surface
 from andon.scene import Scene
 from andon.scene.probes import Probes
-from andon.spaces import View
-from andon.surface import reference as surface
 from andon.surface.model import SurfaceModel
 from andon.transport.probes.light import (
     ProbeLight,
@@ -33,7 +31,6 @@ __all__ = [
     "NO_LAMPS",
     "PROBES",
     "SceneProbes",
-    "ambient_of_probes",
     "changed_since_bake",
     "lampless_pixels",
     "light_of_volume",
@@ -43,10 +40,6 @@ __all__ = [
 ]
 
 Float = NDArray[np.float64]
-
-# Share of the mean below which E0 of a pixel is not taken: E0 divides what lamps add, and in a
-# corner that no probe lights it would be 0.
-LEAST_SHARE = 1e-3
 
 # Of taking.wgsl.
 NO_LAMPS, PROBES = 1, 2
@@ -246,48 +239,3 @@ def light_of_volume(volume: ProbeVolume, table: Probes, /) -> ProbeLight:
         dering=table.dering,
         visibility=table.visibility,
     )
-
-
-def ambient_of_probes(
-    scene: Scene, probes: SceneProbes | None, model: SurfaceModel, views: Mapping[str, View]
-) -> tuple[Ambient, tuple[str, ...]]:
-    """E0 of each pixel of the real surface from the probes; and what is to be said of it.
-
-    Holes take the mean. Raises `InputError` without probes, for two eyes, and in the dark.
-    """
-    table = scene.ambient
-    assert table is not None
-    problem = None
-    if probes is None:
-        problem = "needs [probes] with a volume"
-    elif len(views) > 1:
-        problem = "is one picture of E0 for two eyes"
-    elif model.is_distant_only:
-        problem = "needs positions, but a normals-only surface has none"
-    if problem is not None or probes is None:
-        raise InputError(
-            problem or "", file=scene.file, field="ambient.probes", remedy="state illuminance_lux"
-        )
-    real = replace(model, objects=SurfaceModel().objects, objects_table=())
-    seen = surface.see(real, next(iter(views.values())))
-    lux = np.full((*seen.view.shape, 3), np.nan)
-    lux[seen.valid] = probe_illuminance(
-        probes.light, seen.position[seen.valid], seen.normal[seen.valid]
-    )
-    mean = np.nanmean(lux, axis=(0, 1)) if seen.valid.any() else np.zeros(3)
-    if not (mean > 0).all():
-        raise InputError(
-            f"the probes light the surface with {mean.round(3)} lx: E0 must be > 0 in each channel",
-            file=scene.file,
-            field="ambient.probes",
-            remedy="bake with the lamps of the photograph, or state illuminance_lux",
-        )
-    dark = (lux < LEAST_SHARE * mean).any(axis=-1)
-    lux = np.maximum(np.where(np.isnan(lux), mean, lux), LEAST_SHARE * mean)
-    notes: tuple[str, ...] = ()
-    if dark.any():
-        notes = (
-            f"E0 of {np.count_nonzero(dark)} pixels is below {LEAST_SHARE:.1%} of the mean by the "
-            "probes, and was raised to that",
-        )
-    return Ambient(lux, dimming_of(scene), table.dimming_mode), notes

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +20,6 @@ from andon.scene import Scene
 from andon.spaces import View
 
 __all__ = [
-    "ambient_of",
     "exposure_of",
     "glow_of",
     "luminance_per_unit_of",
@@ -149,52 +147,6 @@ def response_of(scene: Scene, picture: Picture | None) -> Response:
     return LINEAR if table.kind == "linear" else SRGB
 
 
-def ambient_of(scene: Scene, views: Mapping[str, View]) -> Ambient:
-    """E0, from the table, or from its picture."""
-    table = scene.ambient
-    if table is None:
-        raise InputError(
-            "is missing: without E0, the light of the photograph, added light has no scale",
-            file=scene.file,
-            field="ambient",
-            remedy="add [ambient] with illuminance_lux",
-        )
-    if table.map is not None:
-        lux = _ambient_map(scene, table.map, views)
-    else:
-        lux = np.broadcast_to(np.asarray(table.illuminance_lux, float), 3).copy()
-    dimming = np.broadcast_to(np.asarray(table.dimming, float), 3)
-    return Ambient(lux, (dimming[0], dimming[1], dimming[2]), table.dimming_mode)
-
-
-def _ambient_map(scene: Scene, reference: str, views: Mapping[str, View]) -> NDArray[np.float64]:
-    path = scene.path(reference, "ambient.map")
-    if len(views) > 1:
-        raise InputError("one map for two eyes", file=scene.file, field="ambient.map")
-    picture = read_picture(path)
-    view = next(iter(views.values()))
-    if picture.shape != view.shape or picture.encoding != "linear":
-        height, width = picture.shape
-        raise InputError(
-            f"must be a linear {view.width}×{view.height} picture, got {width}×{height} "
-            f"{picture.encoding}",
-            file=str(path),
-            field="ambient.map",
-        )
-    bad = int(np.count_nonzero(~(picture.values > 0) | ~np.isfinite(picture.values)))
-    if bad:
-        raise InputError(
-            f"E0 must be finite and > 0 everywhere, {bad} values are not",
-            file=str(path),
-            field="ambient.map",
-        )
-    from andon.lenses import undistort
-
-    lux = np.asarray(undistort(np.asarray(picture.values, np.float64), view), np.float64)
-    # Where the lens saw nothing the photograph is black: any E0 > 0 keeps it so.
-    return np.where(np.isfinite(lux), lux, np.nanmean(lux, axis=(0, 1)))
-
-
 def luminance_per_unit_of(scene: Scene, ambient: Ambient) -> float:
     """cd/m² of the linear value 1."""
     if scene.capture and scene.capture.luminance_per_unit:
@@ -206,10 +158,6 @@ def luminance_per_unit_of(scene: Scene, ambient: Ambient) -> float:
 def exposure_of(scene: Scene) -> Exposure:
     """Settings of the display."""
     display = scene.display
-    if display.dither:
-        raise InputError(
-            "True is in the schema but not rendered yet", file=scene.file, field="display.dither"
-        )
     through = None
     if display.mode == "ost":
         assert display.peak_luminance_cd_m2 is not None  # the schema asks for it

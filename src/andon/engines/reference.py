@@ -32,6 +32,7 @@ from andon.glow import reference as glow
 from andon.lamps import AreaLamp, Lamp
 from andon.quantities import CameraFrame, DisplayImage, Illuminance, Luminance, Surface
 from andon.surface import reference as surface
+from andon.surface.shells import ShellsInView
 from andon.transport.baked.model import BakedSeen
 from andon.transport.direct import reference as direct
 from andon.transport.direct.casters import ShadowRays
@@ -68,10 +69,17 @@ class ReferenceEngine:
         """The surface of a view; made once, but for what moves."""
         if view_name not in self._surfaces:
             view = self.prepared.frames[view_name].view
-            self._surfaces[view_name] = surface.see(self.prepared.surface, view)
+            shells = self._shells(view_name)
+            self._surfaces[view_name] = surface.see(self.prepared.surface, view, shells)
         still = self._surfaces[view_name]
         seen = surface.with_movers(still, self.prepared.surface, moment.movers)
-        return surface.with_bodies(seen, moment.bodies)
+        seen = surface.with_bodies(seen, moment.bodies)
+        shells = self._shells(view_name)
+        return seen if shells is None else shells.shining(seen, moment.bodies)
+
+    def _shells(self, view_name: str) -> ShellsInView | None:
+        own = self.prepared.shells
+        return None if own is None else own.views[view_name]
 
     def illuminate(self, seen: Surface, moment: Moment) -> Illuminance:
         """Direct light of all lamps on the surface."""

@@ -14,6 +14,7 @@ from andon.files.depth import DEPTH_READERS
 from andon.files.exposures import EXPOSURE_READERS
 from andon.files.gaps import GAP_READERS
 from andon.files.gaze import GAZE_READERS
+from andon.files.harmonics import HARMONIC_READERS
 from andon.files.illuminance_maps import ILLUMINANCE_MAP_READERS
 from andon.files.meshes import MESH_READERS
 from andon.files.photometry import PHOTOMETRY_READERS
@@ -40,6 +41,7 @@ Kind = Literal[
     "geometry",
     "illuminance",
     "radiance",
+    "harmonics",
 ]
 
 READERS: tuple[Reader, ...] = (
@@ -55,6 +57,7 @@ READERS: tuple[Reader, ...] = (
     *GAP_READERS,
     *ILLUMINANCE_MAP_READERS,
     *RADIANCE_READERS,
+    *HARMONIC_READERS,
 )
 
 

@@ -15,14 +15,16 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from andon.errors import InputError
+from andon.files.atomic import write_bytes
 from andon.files.limits import DEFAULT_LIMITS, Limits, check_at_most
 from andon.files.paths import open_bounded
 from andon.files.reader import Reader
 from andon.responses import Response
 
-__all__ = ["RESPONSE_READERS", "read_response"]
+__all__ = ["RESPONSE_READERS", "read_response", "write_response"]
 
 COLUMNS = ("encoded", "linear_r", "linear_g", "linear_b")
 # One row for each code of 16 bits.
@@ -65,6 +67,19 @@ def _numbers(row: str, path: str | Path) -> list[float]:
     if len(values) != len(COLUMNS) or not all(0 <= value <= 1 for value in values):
         raise InputError(f"a row must be four numbers of 0…1, got {row[:60]!r}", file=path)
     return values
+
+
+def write_response(path: str | Path, response: Response, /) -> Path:
+    """Write a ``curve`` response whose channels share their encoded values, as it is read."""
+    assert response.encoded is not None
+    assert response.linear is not None
+    return _write_table(path, COLUMNS, np.column_stack([response.encoded[:, 0], response.linear]))
+
+
+def _write_table(path: str | Path, columns: tuple[str, ...], rows: NDArray[np.float64]) -> Path:
+    # 12 digits keep apart what differs by a millionth of a millionth of the range: rows rise.
+    lines = [",".join(f"{value:.12g}" for value in row) for row in rows.tolist()]
+    return write_bytes(path, "\n".join([",".join(columns), *lines, ""]).encode())
 
 
 RESPONSE_READERS = (Reader("response.csv", (".csv",), read_response),)

@@ -109,8 +109,10 @@ def pack_surface(surface: Surface, /) -> NDArray[np.uint32]:
     packed[..., 2] = channels @ np.array([1, 1 << 8, 1 << 16], np.uint32)
     material = np.clip(surface.material_id, 0, 0xFFFF).astype(np.uint32)
     flags = surface.valid * VALID + surface.is_object * OBJECT + (material << MATERIAL_SHIFT)
-    if surface.body_id is not None:
-        flags = flags + ((surface.body_id + 1).astype(np.uint32) << BODY_SHIFT)
+    # A pixel shows a luminous body, which is an object, or a real shell, which is none.
+    for number in (surface.body_id, surface.shell_id):
+        if number is not None:
+            flags = flags + ((number + 1).astype(np.uint32) << BODY_SHIFT)
     packed[..., 3] = np.where(surface.valid, flags, 0)
     return packed
 
@@ -130,12 +132,14 @@ def unpack_surface(packed: NDArray[np.uint32], view: View, /) -> dict[str, NDArr
     codes = np.stack([(packed[..., 2] >> shift) & 255 for shift in (0, 8, 16)], axis=-1)
     material = ((packed[..., 3] >> MATERIAL_SHIFT) & 0xFFFF).astype(np.int32)
     body = ((packed[..., 3] >> BODY_SHIFT) & 0xFF).astype(np.int32) - 1
+    is_object = (packed[..., 3] & OBJECT) > 0
     return {
         "depth": np.where(valid, packed[..., 0].view(np.float32), np.nan),
         "normal": directions_of(e),
         "reflectance": (codes / 255.0) ** 2,
         "valid": valid,
-        "is_object": (packed[..., 3] & OBJECT) > 0,
+        "is_object": is_object,
         "material_id": np.where(valid, material, -1),
-        "body_id": body,
+        "body_id": np.where(is_object, body, np.int32(-1)),
+        "shell_id": np.where(is_object, np.int32(-1), body),
     }

@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from andon.errors import InputError
 from andon.files.cached import file_stamp, read_cached
 from andon.lamps.coarse import coarse_corners
-from andon.lamps.shells.model import KEPT, Shell
+from andon.lamps.shells.model import KEPT, Drum, Shell
 from andon.lamps.triangles import WELD, triangle_areas, welded
 from andon.quantities import Geometry, photometric
 
 if TYPE_CHECKING:
     from andon.scene import Scene
+    from andon.scene.lamp_parts import Drum as DrumTable
     from andon.scene.lamp_parts import Shell as ShellTable
 
 __all__ = ["Emitters", "lamp_emitters", "lamp_texture", "mesh_in_metres", "shell_of"]
@@ -33,6 +34,9 @@ MAX_TEXTURE = 256
 # Triangles that stand for a mesh as a lamp. A shell has 64 of luminances of their own; here flat
 # neighbours shine alike, and most edges between them cost nothing.
 MAX_FACETS = 96
+
+# Transmittance, absorptance and mode of a shell.
+_Paper = tuple[tuple[float, float, float], float, Literal["exact", "paper"]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +84,16 @@ def lamp_emitters(scene: Scene, reference: str, field: str, /) -> Emitters:
 def shell_of(scene: Scene, table: ShellTable, field: str, /) -> Shell:
     """The shell of a table; the same one as long as neither table nor file changes."""
     source = None if table.mesh is None else _source(scene, table.mesh, f"{field}.mesh")
-    return _shell(source, table.radius_m, table.transmittance, table.absorptance, table.mode)
+    paper = table.transmittance, table.absorptance, table.mode
+    return _shell(source, table.radius_m, _drum(table.drum), paper, table.real, table.margin_m)
+
+
+def _drum(table: DrumTable | None) -> Drum | None:
+    if table is None:
+        return None
+    top = table.radius_m if table.top_radius_m is None else table.top_radius_m
+    drop = table.height_m / 2 if table.drop_m is None else table.drop_m
+    return Drum(table.radius_m, top, table.height_m, drop)
 
 
 def lamp_texture(scene: Scene, reference: str, field: str, /) -> Float:
@@ -119,12 +132,15 @@ def _emitters(source: _Source) -> Emitters:
 def _shell(
     source: _Source | None,
     radius_m: float | None,
-    transmittance: tuple[float, float, float],
-    absorptance: float,
-    mode: Literal["exact", "paper"],
+    drum: Drum | None,
+    paper: _Paper,
+    real: bool,
+    margin_m: float | None,
 ) -> Shell:
     mesh = None if source is None else _geometry(source)
-    return Shell(radius_m, mesh, np.array(transmittance), absorptance, mode)
+    transmittance, absorptance, mode = paper
+    t = np.array(transmittance)
+    return Shell(radius_m, mesh, t, absorptance, mode, drum, real, margin_m)
 
 
 def _texture(path: Path) -> Float:

@@ -29,7 +29,7 @@ from andon.lamps.resolve import resolve_tables
 if TYPE_CHECKING:
     from andon.scene import Scene
 
-__all__ = ["resolve_sources", "scaled"]
+__all__ = ["known_sources", "resolve_sources", "scaled"]
 
 # Ends of the names of a source's two lamps.
 NOW, BEFORE = ", now", ", before"
@@ -59,12 +59,9 @@ def resolve_sources(
             remedy="use 'linear', or state no sources",
         )
     dimming = np.broadcast_to(np.asarray(ambient.dimming, float), 3)
-    known = scene.model_copy(update={"lamp": ambient.source})
     lamps: list[Lamp] = []
-    for lamp in resolve_tables(known, time_seconds, "ambient.source"):
+    for lamp in known_sources(scene, time_seconds):
         shadow = getattr(lamp, "shadow", None)
-        if shadow is not None:
-            shadow = replace(shadow, near_m=_own_extent_m(lamp))
         if lamp.owner not in ambient.removed:
             if shadow is None or not groups:
                 continue
@@ -73,6 +70,19 @@ def resolve_sources(
         if shadow is not None:
             changes["shadow"] = replace(shadow, through=shadow.through | groups)
         lamps.append(scaled(lamp, -dimming, **changes))
+    return tuple(lamps)
+
+
+def known_sources(scene: Scene, time_seconds: float, /) -> tuple[Lamp, ...]:
+    """The known sources of E0 as lamps of their own light, whose own bodies do not hide them."""
+    if scene.ambient is None:
+        return ()
+    known = scene.model_copy(update={"lamp": scene.ambient.source})
+    lamps: list[Lamp] = []
+    for lamp in resolve_tables(known, time_seconds, "ambient.source"):
+        shadow = getattr(lamp, "shadow", None)
+        own = {} if shadow is None else {"shadow": replace(shadow, near_m=_own_extent_m(lamp))}
+        lamps.append(replace(lamp, **own))
     return tuple(lamps)
 
 

@@ -41,6 +41,17 @@ class _Bulb(LampTable, Shadowing, Shelled):
     intensity_cd: NonNegative | None = Field(default=None, description=_INTENSITY)
     flux_lm: NonNegative | None = Field(default=None, description=_FLUX)
 
+    @model_validator(mode="after")
+    def _check_real_shell(self) -> _Bulb:
+        moves = self.path is not None or any(key.position is not None for key in self.key)
+        if self.shell is not None and self.shell.real and moves:
+            raise refusal(
+                "is part of the photograph, and the lamp moves",
+                key="shell.real",
+                remedy="leave out path and the keys' positions, or real",
+            )
+        return self
+
 
 class PointTable(_Bulb):
     """Shines equally to all sides."""

@@ -18,7 +18,7 @@ from andon.scene.base import (
 )
 from andon.scene.geometry import Direction
 
-__all__ = ["Flicker", "LampKey", "Shell"]
+__all__ = ["Drum", "Flicker", "LampKey", "Shell"]
 
 
 class LampKey(Table):
@@ -61,6 +61,36 @@ class LampKey(Table):
         return tuple(name for name in names if getattr(self, name) is not None)
 
 
+class Drum(Table):
+    """The common lampshade: a cylinder or a cone, open above and below, its axis upright."""
+
+    radius_m: Positive = Field(
+        description="Radius of the lower rim in metres.",
+    )
+    top_radius_m: Positive | None = Field(
+        default=None,
+        description="Radius of the upper rim in metres; default: the lower one's.",
+    )
+    height_m: Positive = Field(
+        description="From rim to rim, upright, in metres.",
+    )
+    drop_m: Positive | None = Field(
+        default=None,
+        description="How far the lower rim is below the lamp, metres, less than height_m; "
+        "default: half the height.",
+    )
+
+    @model_validator(mode="after")
+    def _around_the_lamp(self) -> Drum:
+        if self.drop_m is not None and not self.drop_m < self.height_m:
+            raise refusal(
+                f"must be < height_m, {self.height_m:g} m, got {self.drop_m:g}",
+                key="drop_m",
+                remedy="the lamp is inside its shade",
+            )
+        return self
+
+
 class Shell(Table):
     """The translucent shell of a luminous body: lit from inside, it emits outside.
 
@@ -76,6 +106,10 @@ class Shell(Table):
         description="Mesh file of a shell of any other form: one layer of triangles; its origin "
         "is where the lamp is. What its rims leave free are openings.",
     )
+    drum: Drum | None = Field(
+        default=None,
+        description="A drum or cone, open above and below, around the lamp.",
+    )
     transmittance: FractionTriple = Field(
         default=(0.5, 0.5, 0.5),
         description="Net diffuse transmittance t in [0, 1]: share of the light that meets the "
@@ -90,7 +124,13 @@ class Shell(Table):
         default=False,
         description="The shell is a real thing of the photograph, unlit there: its own light is "
         "added to its pixels instead of hiding them, and the real surface at its place hides no "
-        "light of this lamp.",
+        "light of this lamp. It stands still.",
+    )
+    margin_m: Positive | None = Field(
+        default=None,
+        description="Of a real shell: what of the real surface is nearer to it than this, or inside "
+        "it, is the shell. Default: 0.02 m, or what decimation and noise leave uncertain in the "
+        "geometry (twice its 95th percentile), if that is more.",
     )
     mode: Literal["exact", "paper"] = Field(
         default="exact",
@@ -100,8 +140,12 @@ class Shell(Table):
 
     @model_validator(mode="after")
     def _one_form(self) -> Shell:
-        if (self.radius_m is None) == (self.mesh is None):
-            raise refusal("exactly one of radius_m, mesh is allowed")
+        if sum(form is not None for form in (self.radius_m, self.mesh, self.drum)) != 1:
+            raise refusal("exactly one of radius_m, mesh, drum is allowed")
+        if self.margin_m is not None and not self.real:
+            raise refusal(
+                "belongs to real shells", key="margin_m", remedy="state real = true, or leave it out"
+            )
         if self.absorptance + max(self.transmittance) > 1 + 1e-9:
             raise refusal("absorptance + transmittance must be ≤ 1", key="absorptance")
         return self

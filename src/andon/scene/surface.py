@@ -61,7 +61,8 @@ class Depth(Table):
         tuple[Annotated[float, Field(allow_inf_nan=True)], ...], AfterValidator(_drop_nan)
     ] = Field(
         default=(),
-        description="Values of the file that mean a hole; NaN, ±inf and ≤ 0 always do.",
+        description="Values of the file that mean a hole. NaN, ±inf and what is ≤ 0 once scaled "
+        "and shifted always do.",
     )
     max_jump: Annotated[float, Field(gt=0, le=1)] = Field(
         default=0.05,

@@ -26,7 +26,9 @@ class DepthEncoding:
     scale_to_m : metres per unit (0.001 for millimetres); for disparity: pixels per unit.
     baseline_m, doffs_px : stereo baseline and principal-point offset, for disparity:
         z = baseline·fx/(disparity + doffs).
-    invalid : numbers that mean "no measurement", besides NaN, ±inf and what is not positive.
+    invalid : numbers that mean "no measurement", besides NaN, ±inf and what is not positive in
+        metres (disparity: in pixels).
+    shift_m : added after scaling, of z and distance: relative depth is metric but for both.
     """
 
     kind: Literal["z", "distance", "disparity"] = "z"
@@ -34,6 +36,7 @@ class DepthEncoding:
     baseline_m: float | None = None
     doffs_px: float = 0.0
     invalid: tuple[float, ...] = ()
+    shift_m: float = 0.0
 
 
 def depth_from_raw(raw: Float, view: View, encoding: DepthEncoding, /, *, file: str = "") -> Float:
@@ -47,7 +50,8 @@ def depth_from_raw(raw: Float, view: View, encoding: DepthEncoding, /, *, file: 
             f"is {raw.shape[1]}×{raw.shape[0]} px but the camera is {view.width}×{view.height}",
             file=file,
             field="surface.depth",
-            remedy="give depth and camera of the same picture",
+            remedy="give depth and camera of one picture; the depth may have fewer pixels, but "
+            "the same sides",
         )
     raw = np.where(np.isin(raw, encoding.invalid) | ~np.isfinite(raw), np.nan, raw)
     depth = _metres(raw, view, encoding, file)
@@ -74,7 +78,9 @@ def _metres(raw: Float, view: View, encoding: DepthEncoding, file: str) -> Float
         with np.errstate(divide="ignore", invalid="ignore"):
             shifted = raw * encoding.scale_to_m + encoding.doffs_px
             return np.where(shifted > 0, encoding.baseline_m * view.fx / shifted, np.nan)
-    depth = raw * encoding.scale_to_m
+    depth = raw * encoding.scale_to_m + encoding.shift_m
+    with np.errstate(invalid="ignore"):
+        depth = np.where(depth > 0, depth, np.nan)
     if encoding.kind == "distance" and view.projection == "pinhole":
         return depth * view.directions()[..., 2]
     if encoding.kind == "z" and view.projection != "pinhole":

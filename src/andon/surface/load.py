@@ -15,6 +15,7 @@ from andon.files.pictures import read_picture
 from andon.lenses import undistort
 from andon.quantities import Geometry, Material, merged
 from andon.scene import Scene
+from andon.scene.surface import Depth
 from andon.spaces import View, rotate
 from andon.surface.depth import DepthEncoding, depth_from_raw
 from andon.surface.meshes import check_textures, read_geometry, rest_note
@@ -22,6 +23,7 @@ from andon.surface.model import ShadowBias, SurfaceModel
 from andon.surface.normals import normals_from_depth
 from andon.surface.objects import load_objects
 from andon.surface.occluder import decimated
+from andon.surface.resample import resampled, same_aspect
 from andon.surface.triangulate import thickened, triangulate_depth
 
 __all__ = ["load_surface", "mesh_geometry", "surface_of_depth", "surface_of_mesh"]
@@ -90,17 +92,10 @@ def _from_depth(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
     # One depth image belongs to one picture: the first view. Other views see its triangles.
     name, view = next(iter(views.items()))
     path = scene.path(table.file, "surface.depth.file")
-    encoding = DepthEncoding(
-        table.kind, table.scale_to_m, table.baseline_m, table.doffs_px, tuple(table.invalid)
-    )
-    seen_by = view if table.focal_px is None else replace(view, fx=table.focal_px)
     raw = read_depth_array(path)
-    if raw.shape == view.shape:
-        # First: distance becomes depth by the directions of the *undistorted* pixels.
-        raw = undistort(raw, view, method="nearest")
-    depth = depth_from_raw(raw, seen_by, encoding, file=str(path))
+    depth = _depth_of(raw, view, table, str(path))
     given = None if scene.surface.normals is None else _read_normals(scene, view)
-    return surface_of_depth(
+    model = surface_of_depth(
         depth,
         replace(view.undistorted(), name=name),
         normals=given,
@@ -109,6 +104,35 @@ def _from_depth(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
         occluder_triangles=scene.surface.occluder_triangles,
         file=str(path),
     )
+    return replace(model, notes=_on_size(raw.shape, view, path.name))
+
+
+def _depth_of(raw: Float, view: View, table: Depth, file: str) -> Float:
+    """Depth (H, W) in metres of the undistorted view, from a file's numbers of any resolution."""
+    encoding = DepthEncoding(
+        table.kind,
+        table.scale_to_m,
+        table.baseline_m,
+        table.doffs_px,
+        tuple(table.invalid),
+        table.shift_m,
+    )
+    own = view
+    if raw.shape != view.shape and same_aspect((raw.shape[0], raw.shape[1]), view.shape):
+        own = view.resized(raw.shape[1], raw.shape[0])
+    if raw.shape == own.shape:
+        # First: distance becomes depth by the directions of the *undistorted* pixels.
+        raw = undistort(raw, own, method="nearest")
+    seen_by = own if table.focal_px is None else replace(own, fx=table.focal_px)
+    depth = depth_from_raw(raw, seen_by, encoding, file=file)
+    return depth if own is view else resampled(depth, view.shape, max_jump=table.max_jump)
+
+
+def _on_size(shape: tuple[int, ...], view: View, name: str) -> tuple[str, ...]:
+    if shape == view.shape:
+        return ()
+    sizes = f"{shape[1]}×{shape[0]} px for a picture of {view.width}×{view.height}"
+    return (f"{name} has {sizes}: resampled, edges kept",)
 
 
 def surface_of_depth(

@@ -14,6 +14,7 @@ from andon.quantities import Geometry, Material, Surface
 from andon.rays import Hits, RayScene, face_normals
 from andon.spaces import View, transform_points
 from andon.surface.model import SurfaceModel
+from andon.surface.shells import ShellsInView
 from andon.surface.textures import sample_bilinear
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "from_normals",
     "nearest",
     "see",
+    "see_real",
     "trace",
     "trace_body",
     "trace_rays",
@@ -32,12 +34,14 @@ __all__ = [
 Float = NDArray[np.float64]
 
 
-def see(model: SurfaceModel, view: View, /) -> Surface:
+def see(model: SurfaceModel, view: View, /, shells: ShellsInView | None = None) -> Surface:
     """The surface of `view`: the real geometry, and virtual objects where they are nearer.
 
-    Of objects only those that stand still; see `with_movers`.
+    Of objects only those that stand still; see `with_movers`. `shells` says which of its pixels
+    show real shells.
     """
-    real = _see_real(model, view)
+    real = see_real(model, view)
+    real = real if shells is None else shells.marked(real)
     if len(model.objects.triangles) == 0:
         return real
     return nearest(real, trace(model.objects, view, is_object=True))
@@ -53,9 +57,13 @@ def with_movers(surface: Surface, model: SurfaceModel, movers: Sequence[Geometry
 
 
 def with_bodies(surface: Surface, bodies: Sequence[Body], /) -> Surface:
-    """The surface with luminous bodies where they are nearer, each with its own light."""
+    """The surface with luminous bodies where they are nearer, each with its own light.
+
+    Real shells are there already.
+    """
     for number, body in enumerate(bodies):
-        surface = nearest(surface, trace_body(body, number, surface.view))
+        if not body.real:
+            surface = nearest(surface, trace_body(body, number, surface.view))
     return surface
 
 
@@ -74,7 +82,8 @@ def trace_body(body: Body, number: int, view: View, /) -> Surface:
     return replace(surface, body_id=np.where(mask, np.int32(number), np.int32(-1)))
 
 
-def _see_real(model: SurfaceModel, view: View) -> Surface:
+def see_real(model: SurfaceModel, view: View, /) -> Surface:
+    """The real geometry alone."""
     if view.name in model.depth:
         return from_depth(model.depth[view.name], model.normals[view.name], view)
     if model.is_distant_only:
@@ -256,4 +265,5 @@ def nearest(real: Surface, objects: Surface, /) -> Surface:
         view=real.view,
         cover=real.cover,
         body_id=None if all(body is None for body in bodies) else np.where(front, before, behind),
+        shell_id=None if real.shell_id is None else np.where(front, np.int32(-1), real.shell_id),
     )

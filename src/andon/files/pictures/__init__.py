@@ -31,6 +31,7 @@ from andon.files.pictures.rgbe import read_hdr
 from andon.files.pictures.write import (
     npy_bytes,
     write_exr,
+    write_exr_channels,
     write_hdr,
     write_jpeg,
     write_npy,
@@ -46,6 +47,7 @@ __all__ = [
     "npy_bytes",
     "read_picture",
     "write_exr",
+    "write_exr_channels",
     "write_hdr",
     "write_jpeg",
     "write_npy",

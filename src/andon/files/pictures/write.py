@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from andon.quantities import Photometry
 __all__ = [
     "npy_bytes",
     "write_exr",
+    "write_exr_channels",
     "write_hdr",
     "write_jpeg",
     "write_npy",
@@ -85,21 +87,49 @@ def write_exr(
     if values.ndim == 3 and values.shape[2] == 1:
         values = values[..., 0]
     _check_array(values, path, (np.float16, np.float32, np.float64))
-    wheel = openexr()
     names = "Y" if values.ndim == 2 else "RGB" if alpha is None else "RGBA"
     layers = np.atleast_3d(values) if alpha is None else np.dstack([values, alpha])
-    planes = np.moveaxis(layers.astype(np.float32), -1, 0)
-    header: dict[str, Any] = {
-        "compression": wheel.ZIP_COMPRESSION,
-        "type": wheel.scanlineimage,
+    planes = dict(zip(names, np.moveaxis(layers, -1, 0), strict=True))
+    header = {
         "chromaticities": REC709_XY,
         "andon:unit": unit,
         "andon:photometry": photometry,
         **(attributes or {}),
     }
-    channels = {
-        name: np.ascontiguousarray(plane) for name, plane in zip(names, planes, strict=True)
+    return _write_planes(path, planes, header)
+
+
+def write_exr_channels(
+    path: str | Path,
+    channels: Mapping[str, NDArray[Any]],
+    *,
+    units: Mapping[str, str],
+    attributes: Mapping[str, str | int | float] | None = None,
+) -> Path:
+    """Write named quantities (H, W) as the channels of a 32-bit float EXR.
+
+    Parameters
+    ----------
+    channels : name → values (H, W), all of one size; non-finite values are kept.
+    units : name → unit, of all channels; the header attribute ``andon:unit`` lists them.
+    attributes : further header attributes.
+    """
+    for values in channels.values():
+        _check_array(values, path, (np.uint8, np.float16, np.float32, np.float64))
+    listed = ", ".join(f"{name} [{units[name]}]" for name in channels)
+    return _write_planes(path, channels, {"andon:unit": listed, **(attributes or {})})
+
+
+def _write_planes(
+    path: str | Path, planes: Mapping[str, NDArray[Any]], attributes: Mapping[str, Any]
+) -> Path:
+    wheel = openexr()
+    header: dict[str, Any] = {
+        "compression": wheel.ZIP_COMPRESSION,
+        "type": wheel.scanlineimage,
+        **attributes,
     }
+    channels = {name: np.ascontiguousarray(plane, np.float32) for name, plane in planes.items()}
 
     def fill(temporary: Path) -> None:
         try:

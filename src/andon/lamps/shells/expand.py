@@ -93,6 +93,9 @@ def _body(lamp: PointLamp, shell: Shell, form: Form, outside: Float, inside: Flo
         outside * lamp.intensity_cd,
         inside * lamp.intensity_cd,
         shell.reflectance,
+        shell.real,
+        shell.margin_m,
+        form.covers + lamp.position_m,
     )
 
 

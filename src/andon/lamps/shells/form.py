@@ -13,9 +13,10 @@ from andon.lamps.coarse import coarse_corners
 from andon.lamps.polygons import vector_area
 from andon.lamps.shells.beams import solid_angles
 from andon.lamps.shells.cutting import cut_long, widest_edge
+from andon.lamps.shells.drum import drum_mesh, rim_loop
 from andon.lamps.shells.layer import FIELD, Layer, clean_layer, rims
 from andon.lamps.shells.lids import fan, flat_lid
-from andon.lamps.shells.model import KEPT, Shell
+from andon.lamps.shells.model import KEPT, Drum, Shell
 from andon.lamps.shells.pairs import flat_pairs
 from andon.lamps.solids import icosphere
 from andon.lamps.triangles import area_vectors, triangle_areas
@@ -42,6 +43,8 @@ FACET_RADIANS = 1.2
 # Of their area, facets that are cut across may lose so much more.
 CUT_LOSS = 0.1
 SPHERE_CUTS_DRAWN, SPHERE_CUTS_LIGHT = 4, 1
+# Panels around and along a drum: seen within 0.1 % of its radius, and as many emit as may.
+DRUM_DRAWN, DRUM_LIGHT = (72, 12), (16, 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +86,8 @@ def form_of(shell: Shell, /) -> Form:
     Raises `InputError` for a mesh that is no shell: see `clean_layer`; the lamp is outside; it
     covers itself.
     """
+    if shell.drum is not None:
+        return _drum(shell.drum)
     if shell.mesh is None:
         return _sphere(shell.radius_m or 0.0)
     layer = clean_layer(shell.mesh.positions, shell.mesh.triangles)
@@ -113,6 +118,18 @@ def _sphere(radius_m: float) -> Form:
     drawn = Geometry(fine.positions * radius_m, fine.triangles, fine.normals)
     whole = drawn.positions[drawn.triangles]
     return Form(drawn, whole, facets, np.empty((0, 3, 3)))
+
+
+def _drum(drum: Drum) -> Form:
+    drawn, (around, along) = drum_mesh(drum, *DRUM_DRAWN), DRUM_LIGHT
+    corners = drawn.positions[drawn.triangles]
+    # Polygons with the area of the circles they stand for: walls and lids alike.
+    wider = np.sqrt(2 * np.pi / around / np.sin(2 * np.pi / around))
+    coarse = drum_mesh(drum, around, along, wider)
+    lids = tuple(rim_loop(drum, around, wider, above=above) for above in (True, False))
+    covers = [fan(rim_loop(drum, DRUM_DRAWN[0], 1.0, above=above)) for above in (True, False)]
+    facets = coarse.positions[coarse.triangles]
+    return Form(drawn, corners, facets, np.concatenate(covers), lids)
 
 
 def _openings(layer: Layer) -> list[Float]:

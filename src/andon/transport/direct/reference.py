@@ -178,7 +178,7 @@ def illuminate(
     ----------
     rays : against what casts shadows.
     bias_m : (H, W) lift along the normal before a shadow ray starts, metres.
-    bodies : names of the luminous bodies that `surface.body_id` counts.
+    bodies : names of the luminous bodies that `surface.body_id` and `surface.shell_id` count.
     balls : of glass, which bend the light of point, spot, measured and directional lamps.
     """
     total = np.zeros((*surface.view.shape, 3))
@@ -186,11 +186,16 @@ def illuminate(
     position, normal = surface.position[mask], surface.normal[mask]
     lifted = position + normal * bias_m[mask][:, None]
     body = None if surface.body_id is None else surface.body_id[mask]
+    shell = None if surface.shell_id is None else surface.shell_id[mask]
     added = np.zeros_like(position)
     for lamp in lamps:
         own = None
         if isinstance(lamp, AreaLamp) and lamp.body in bodies and body is not None:
             own = body == list(bodies).index(lamp.body)
+        if lamp.owner in bodies and shell is not None:
+            # Of a real shell the bulb's light, too, is in the light of the shell itself.
+            inside = shell == list(bodies).index(lamp.owner)
+            own = inside if own is None else own | inside
         added += arriving(lamp, position, normal, lifted, rays, balls, own)
     total[mask] = added
     return total

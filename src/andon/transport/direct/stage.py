@@ -60,6 +60,7 @@ class DirectStage:
         captured: Set[str] = frozenset(),
         silent: Set[str] = frozenset(),
         balls: Sequence[GlassBall] = (),
+        shells: Set[str] = frozenset(),
     ) -> None:
         self.gpu = gpu
         self.bias = {"bias_real_m": bias_real_m, "bias_object_m": bias_object_m}
@@ -82,6 +83,7 @@ class DirectStage:
             triangles=len(self.casters.triangles),
             captured=captured,
             silent=silent,
+            shells=shells,
         )
         self.terms = lamp_terms(lamps, self.maps.layers, luminaires.tables)
         self.softening = softenings(lamps, self.soft.firsts)

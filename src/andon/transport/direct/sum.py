@@ -29,6 +29,7 @@ def sum_of_lamps(
     triangles: int,
     captured: Set[str] = frozenset(),
     silent: Set[str] = frozenset(),
+    shells: Set[str] = frozenset(),
 ) -> str:
     """The module that stands in for sum.wgsl.
 
@@ -41,6 +42,7 @@ def sum_of_lamps(
     triangles : how many cast shadows.
     captured : names of sky and hemisphere lamps whose light probes hold.
     silent : names of lamps that are not in the sum: their light is baked.
+    shells : names of the bodies that are real shells, on which no part of their lamp falls.
     """
     lines = [
         f"const MAP_SIZE: f32 = {float(map_size)};",
@@ -51,11 +53,16 @@ def sum_of_lamps(
     ]
     summed = [(n, lamp) for n, lamp in enumerate(lamps) if lamp.name not in silent]
     for number, lamp in summed:
-        if not isinstance(lamp, AnyAreaLamp):
-            lines.append(f"  total += {_term(number, lamp, layers, tables)};")
+        if isinstance(lamp, AnyAreaLamp):
+            continue
+        term = _term(number, lamp, layers, tables)
+        if lamp.owner in shells:
+            own = list(bodies).index(lamp.owner) + 1
+            term = f"select({term}, vec3f(0.0), body == {own}u)"
+        lines.append(f"  total += {term};")
     areas = [(n, lamp) for n, lamp in summed if isinstance(lamp, AnyAreaLamp)]
     if areas:
-        lines += _areas(areas, bodies, samples, edges)
+        lines += _areas(areas, bodies, shells, samples, edges)
     lines += ["  return total;", "}", "fn captured_lux(normal: vec3f) -> vec3f {"]
     terms = [
         _term(number, lamp, layers, tables) for number, lamp in summed if lamp.name in captured
@@ -107,6 +114,7 @@ def _term(
 def _areas(
     areas: Sequence[tuple[int, AnyAreaLamp]],
     bodies: Sequence[str],
+    shells: Set[str],
     samples: Mapping[str, int],
     edges: Mapping[str, tuple[int, int]],
 ) -> list[str]:
@@ -118,7 +126,8 @@ def _areas(
         own_edges = edges.get(lamp.name, (0, 0))
         calls.setdefault(form_of(lamp), []).append((slot, number, *own_edges))
         count = 0 if lamp.shadow is None else lamp.shadow.samples
-        own = list(bodies).index(lamp.body) + 1 if lamp.body in bodies else 0
+        body = lamp.owner if lamp.owner in shells else lamp.body
+        own = list(bodies).index(body) + 1 if body in bodies else 0
         shadows.append((samples.get(lamp.name, 0), count, probes(count), own))
     for form, rows in calls.items():
         has_edges = form.startswith(("polygon", "edges"))

@@ -21,7 +21,7 @@ from andon.verify.baked_room import (
     relit_lux,
     white_cd_m2,
 )
-from andon.verify.ciede2000 import delta_e_2000, lab_of_linear
+from andon.display.ciede2000 import delta_e_2000, lab_of_linear
 from andon.verify.registry import Row
 
 __all__ = ["ROWS", "added_error", "relit_difference"]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from andon.verify.ciede2000 import delta_e_2000, lab_of_linear
+from andon.display.ciede2000 import delta_e_2000, lab_of_linear
 
 # Sharma, Wu & Dalal 2005, table 1: L*a*b* of two colours, and their difference.
 PAIRS = [

@@ -1,0 +1,75 @@
+"""What is worth knowing of a fit, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from andon.calibrate.lamps.model import LampFit
+
+__all__ = ["notes_of"]
+
+# Above it so much contradicts the fit that one should look why.
+NOTABLE_REJECTED = 0.1
+
+
+def notes_of(fit: LampFit, /) -> tuple[str, ...]:
+    """One line each."""
+    return tuple([*_on_same(fit), *_on_motion(fit), *_on_terms(fit), *_on_error(fit)])
+
+
+def _on_same(fit: LampFit) -> list[str]:
+    if not np.array_equal(fit.photograph, fit.reference):
+        return []
+    return ["the reference is the photograph itself: there is nothing to fit"]
+
+
+def _on_motion(fit: LampFit) -> list[str]:
+    motion = fit.motion
+    if np.isnan(motion.correlation):
+        return []
+    if not motion.is_told:
+        return [
+            "photograph and reference have too little in common to tell whether the camera moved "
+            f"(correlation of fine structure {motion.correlation:.2f})"
+        ]
+    if motion.is_still:
+        return []
+    return [
+        f"the reference was moved by up to {motion.corner_px:.1f} px onto the photograph "
+        f"(correlation of fine structure {motion.correlation:.2f}); --fit-align none leaves it"
+    ]
+
+
+def _on_terms(fit: LampFit) -> list[str]:
+    alike = [light.name for light in fit.lamps if not light.told_apart]
+    alike += ["dimming"] if fit.dimming is not None and not fit.dimming.told_apart else []
+    alike += ["bounce"] if fit.fill is not None and not fit.fill.told_apart else []
+    notes: list[str] = []
+    if alike:
+        notes.append(
+            f"no pixel tells {' from '.join(alike)}: only their sum is known, and how it is "
+            "shared out is arbitrary"
+        )
+    notes += [
+        f"the lamp {light.name!r} got no light: the reference is no brighter where it shines"
+        for light in fit.lamps
+        if not light.factor.any()
+    ]
+    return notes
+
+
+def _on_error(fit: LampFit) -> list[str]:
+    notes: list[str] = []
+    if fit.rejected_share > NOTABLE_REJECTED:
+        notes.append(
+            f"{fit.rejected_share:.0%} of what the fit looked at contradicts it and counts for "
+            "nothing: things that moved, or light that is not modelled"
+        )
+    whole = fit.measures["inside" if fit.mask is not None else "whole"]
+    best = min(("unchanged", "gain_one", "gain_channels"), key=lambda n: whole[n].rmse_encoded)
+    if whole["fitted"].rmse_encoded > whole[best].rmse_encoded:
+        notes.append(
+            f"the trivial prediction {best!r} is nearer to the reference than the fit: check "
+            "places of lamps, E0 and the response"
+        )
+    return notes

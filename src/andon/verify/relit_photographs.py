@@ -156,6 +156,7 @@ def write_pair(
     Pictures that are there already are kept: all pairs of one target share them. Without `with_map`
     nothing but the photograph tells what the surface reflects.
     """
+    folder.mkdir(parents=True, exist_ok=True)
     target = known.target
     photo, normals = f"{shots.name}.{source}.png", f"normals-{target}.exr"
     reflectance = f"reflectance-{target}.exr"

@@ -47,7 +47,7 @@ CHANNELS = "red", "green", "blue"
 LEAST_SUPPORT = 4
 # Exposures and g are found in turn, until no exposure moves by more.
 ROUNDS, SETTLED_EV = 12, 0.003
-ROUND_PIXELS = 50_000
+ROUND_PIXELS = 40_000
 # Shutters and apertures keep their stops to a third; what is off by so many stops is no tolerance.
 CONTRADICTING_EV = 1.0
 # A fall of so many standard errors and stops is none of noise.

@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 from andon.calibrate.surface import KnownLight, SurfaceFit, fit_surface
 from andon.verify.relit_photographs import LIGHT_LUX, photographs
 
-__all__ = ["ball_normals", "gray_sphere"]
+__all__ = ["ball_normals", "gray_sphere", "offset_line"]
 
 Float = NDArray[np.float64]
 
 # Of the radius: beyond, normals of the outline's pixels are guesses.
 RIM = 0.95
 CLIPPED_CODES = 254
+# Of the strongest light: the terminator is soft, for lights have a size and rooms walls.
+LINE_FROM = 0.05
 
 
 def ball_normals(mask: NDArray[np.bool_], /) -> Float:
@@ -54,3 +56,13 @@ def gray_sphere() -> SurfaceFit:
         for k, (codes, direction) in enumerate(zip(shots.codes, shots.directions, strict=True))
     ]
     return fit_surface(lit, np.isfinite(normals[..., 0]), name="gray sphere")
+
+
+def offset_line() -> tuple[float, float]:
+    """Of green, from a twentieth of the strongest light on: largest distance from a straight line,
+    and that line's value in no light, as shares of the range."""
+    curve = gray_sphere().curve
+    lit = curve.illuminance_lux >= LINE_FROM * curve.illuminance_lux[-1]
+    lux, green = curve.illuminance_lux[lit], curve.linear[lit, 1]
+    line = np.poly1d(np.polyfit(lux, green, 1))
+    return float(np.abs(green - line(lux)).max() / green[-1]), float(line(0) / green[-1])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from andon.calibrate.surface.channel import ChannelFit, fit_channel
 from andon.calibrate.surface.model import KnownLight, Samples, SurfaceFit
-from andon.calibrate.surface.monotone import strictly_rising
+from andon.calibrate.surface.monotone import LEAST_STEP, smooth_between, strictly_rising
 from andon.errors import InputError
 from andon.responses import SurfaceCurve
 
@@ -26,6 +26,10 @@ SAME_LEVEL = 1.01
 LEAST_RANGE = 1.2
 # Knots of a curve over illuminances that vary, denser in the dark, and values that each needs.
 KNOTS, LEAST_VALUES = 12, 30
+# Rows of the curve from knot to knot; straight lines between them stand for a smooth curve.
+ROWS_BETWEEN = 4
+# Of the largest illuminance: below, stray light decides the exponent.
+EXPONENT_FROM = 0.05
 # A fall of so many standard errors and of this share of the range is none of noise.
 FALL_ERRORS, LEAST_FALL = 4.0, 0.02
 
@@ -184,17 +188,20 @@ def _fall(fit: ChannelFit, knots: Float, channel: str, name: str) -> float:
 
 def _from_zero(knots: Float, rising: Float) -> tuple[SurfaceCurve, bool]:
     """The curve from 0 lx on, and whether its beginning is assumed."""
-    if knots[0] <= 0:
-        # Less than no light is noise of the darkest pixels.
-        start = np.maximum(rising[0], 0.0)
-        return SurfaceCurve(knots, np.concatenate([[np.minimum(start, rising[1] * 0.999)], rising[1:]])), False
-    rising = np.maximum(rising, LEAST_FALL * 1e-3 * rising[-1])
-    return SurfaceCurve(np.append(0.0, knots), np.vstack([np.zeros(3), rising])), True
+    is_assumed = bool(knots[0] > 0)
+    if is_assumed:
+        rising = np.maximum(rising, LEAST_STEP * rising[-1] * np.arange(1, len(knots) + 1)[:, None])
+        knots, rising = np.append(0.0, knots), np.vstack([np.zeros(3), rising])
+    else:
+        # Less than nothing is noise of the darkest pixels.
+        rising = np.maximum(rising, LEAST_STEP * rising[-1] * np.arange(len(knots))[:, None])
+    parts = [smooth_between(knots, rising[:, c], ROWS_BETWEEN) for c in range(3)]
+    return SurfaceCurve(parts[0][0], np.stack([values for _, values in parts], axis=-1)), is_assumed
 
 
 def _shape(knots: Float, rising: Float) -> tuple[Float, Float]:
     """Exponent (3,) and distance from a straight line (3,), see `SurfaceFit`."""
-    lit = (knots > 0)[:, None] & (rising > 0)
+    lit = (knots >= EXPONENT_FROM * knots[-1])[:, None] & (rising > 0)
     exponents: list[float] = []
     for c in range(3):
         x, y = np.log(knots[lit[:, c]]), np.log(rising[lit[:, c], c])

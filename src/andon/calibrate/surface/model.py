@@ -66,7 +66,7 @@ class SurfaceFit:
     clipped_share : of the surface's values that were left out.
     fall_share : deepest fall, of the range, that was within noise and was levelled; 0 for none.
     zero_assumed : no photograph was dark, and f(0) = 0 is taken for granted.
-    exponent : (3,) slope of ln f over ln E; 1 is linear.
+    exponent : (3,) slope of ln f over ln E, from a twentieth of the largest E on; 1 is linear.
     straightness : (3,) largest distance of f from the straight line through 0 that fits best, as a
         share of the range.
     """

@@ -38,8 +38,8 @@ Float = NDArray[np.float64]
 CODES = 256
 MIDDLE = 128  # Debevec & Malik's anchor: g(128) = 0
 # λ of the curve's smoothness, against hat weights of up to 127 in so many equations. With half of
-# it curves of known cameras swing by 1 %, in periods of the exposures' step; with four times, what a
-# film does is smoothed away: the memorial series' residual grows by a fifth.
+# it curves of known cameras swing by 1 %, in periods of the exposures' step; with four times, what
+# a film does is smoothed away: the memorial series' residual grows by a fifth.
 SMOOTHNESS = 110.0
 # Equations from photographs; Debevec & Malik ask for more than there are codes. With 4000 a third
 # of the memorial series' codes had none.

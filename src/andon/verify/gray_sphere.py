@@ -64,6 +64,6 @@ def offset_line() -> tuple[float, float]:
     curve = gray_sphere().curve
     lit = curve.illuminance_lux >= LINE_FROM * curve.illuminance_lux[-1]
     lux, green = curve.illuminance_lux[lit], curve.linear[lit, 1]
-    slope, start = (float(value) for value in np.polyfit(lux, green, 1))
+    slope, start = np.asarray(np.polyfit(lux, green, 1), np.float64).tolist()
     apart = np.abs(green - start - slope * lux)
     return float(apart.max() / green[-1]), start / float(green[-1])

@@ -55,8 +55,8 @@ def _calibrated(
     codes: list[NDArray[np.uint8]] = []
     for t in seconds.tolist():
         clean = np.asarray(response.encode(np.clip(0.4 * scene * t, 0, 1)), np.float64) * 255
-        noisy = clean + generator.normal(0, NOISE_CODES, scene.shape) + 0.5
-        codes.append(np.clip(noisy, 0, 255).astype(np.uint8))
+        noise = np.asarray(generator.normal(0, NOISE_CODES, scene.shape), np.float64)
+        codes.append(np.clip(clean + noise + 0.5, 0, 255).astype(np.uint8))
     stated = seconds.copy()
     stated[WRONG] *= 2**WRONG_EV if is_wrong else 1
     return calibrate_camera(bracket_of([str(k) for k in range(count)], codes, stated.tolist()))

@@ -13,6 +13,8 @@ __all__ = ["captured_rays", "distorted_pixels", "undistort"]
 
 Float = NDArray[np.float64]
 
+INVERSION_STEPS = 50
+
 
 def distorted_pixels(view: View, /) -> Float:
     """(H, W, 2) pixel coordinates (column, row) in the captured picture of each undistorted pixel.
@@ -28,33 +30,34 @@ def distorted_pixels(view: View, /) -> Float:
         k1, k2, k3, k4 = view.distortion
         factor = 1 + square * (k1 + square * (k2 + square * (k3 + square * k4)))
         return x * factor[..., None] * (view.fx, view.fy) + (view.cx, view.cy)
-    import cv2
-
-    matrix = np.array([[view.fx, 0, view.cx], [0, view.fy, view.cy], [0, 0, 1.0]])
-    points = view.rays_planar().reshape(-1, 1, 3)
-    still = np.zeros(3)
-    pixels, _ = cv2.projectPoints(points, still, still, matrix, np.array(view.distortion))
-    return np.asarray(pixels, np.float64).reshape(*view.shape, 2)
+    return _projected(view.rays_planar(), view) * (view.fx, view.fy) + (view.cx, view.cy)
 
 
 def captured_rays(view: View, /) -> Float:
     """(H, W, 3) camera-frame rays with z = 1 of a pinhole's pixels as captured, lens and all.
 
-    OpenCV inverts the lens by fixed-point steps: 100 of them, or 1e-12 of the focal length.
+    Inverted by fixed-point steps to 1e-12 of the focal length, or 50 of them: beyond the edge of
+    a strong lens's model there is no ray, and what is given there means nothing.
     """
-    if not view.distortion:
-        return view.rays_planar()
+    rays = view.rays_planar()
+    target = rays[..., :2].copy()
+    for _ in range(INVERSION_STEPS if view.distortion else 0):
+        error = _projected(rays, view) - target
+        rays[..., :2] -= error
+        if np.abs(error).max() < 1e-12:
+            break
+    return rays
+
+
+def _projected(rays: Float, view: View) -> Float:
+    """(H, W, 2) image of rays (H, W, 3) with z = 1 behind a pinhole's lens, in focal lengths."""
     import cv2
 
-    matrix = np.array([[view.fx, 0, view.cx], [0, view.fy, view.cy], [0, 0, 1.0]])
-    until = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 100, 1e-12)
-    pixels = view.pixel_grid().reshape(-1, 1, 2)
-    points = cv2.undistortPointsIter(
-        pixels, matrix, np.array(view.distortion), np.eye(3), np.eye(3), until
+    still = np.zeros(3)
+    points, _ = cv2.projectPoints(
+        rays.reshape(-1, 1, 3), still, still, np.eye(3), np.array(view.distortion)
     )
-    rays = np.ones((*view.shape, 3))
-    rays[..., :2] = np.asarray(points).reshape(*view.shape, 2)
-    return rays
+    return np.asarray(points, np.float64).reshape(*rays.shape[:2], 2)
 
 
 def undistort(

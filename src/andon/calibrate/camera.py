@@ -31,7 +31,7 @@ from andon.capture.recovery import CODES, Recovery, recover_curves, seconds_of
 from andon.errors import InputError
 from andon.responses import Response
 
-__all__ = ["CameraCalibration", "calibrate_camera", "check_calibration"]
+__all__ = ["CHANNELS", "CameraCalibration", "calibrate_camera", "check_calibration"]
 
 Float = NDArray[np.float64]
 
@@ -40,6 +40,7 @@ CHANNELS = "red", "green", "blue"
 LEAST_SUPPORT = 4
 # Exposures and g are found in turn, until no exposure moves by more.
 ROUNDS, SETTLED_EV = 12, 0.003
+ROUND_PIXELS = 50_000
 # Shutters and apertures keep their stops to a third; what is off by so many stops is no tolerance.
 CONTRADICTING_EV = 1.0
 # A fall of so many standard errors and stops is none of noise.
@@ -156,7 +157,8 @@ def _exposure_errors(bracket: Bracket) -> Float:
     bias = errors
     for _ in range(ROUNDS):
         fitted = replace(bracket, seconds=2 ** (logs + errors))
-        bias = residuals_of(fitted, recover_curves(fitted).curves).exposure_ev
+        curves = recover_curves(fitted).curves
+        bias = residuals_of(fitted, curves, pixels=ROUND_PIXELS).exposure_ev
         step = np.nan_to_num(bias)
         errors = errors + step
         errors = errors - np.polyval(np.polyfit(logs, errors, 1), logs)

@@ -1,12 +1,15 @@
-"""Noise against banding: captured light anywhere within its step, not at its middle.
+"""Against banding: captured light anywhere within its step, not at its middle.
 
 A code of the photograph stands for all light within half a step of it. Brightened, its step is A
-codes wide, and a slow gradient becomes bands::
+codes wide, and a slow gradient becomes bands of A codes. Where in its step a value lies is told by
+its surroundings, and noise fills the room that is left to either side::
 
-    light   ╱╱╱╱╱╱╱╱     8 bits   ▁▁▁▃▃▃▅▅▅     × 16   bands of A codes
-    noise of ±½ step     8 bits   ▁▂▁▃▂▄▃▅▄     × 16   grain: as wide as the step has become
+    light    ╱╱╱╱╱╱╱╱      captured  ▁▁▁▃▃▃▅▅▅      × A   bands
+    mean of surroundings   captured  ▁▂▂▃▃▄▄▅▅      × A   gradient, rounded
+    and noise              captured  ▁▂▃▂▄▃▅▄▅      × A   gradient in grain
 
-So the noise is put in where the step is: into the captured light, before it is relit.
+Both happen to the captured light, before it is relit, never leave the step, and fade where the
+surroundings spread by more than the step: texture has no bands, and is left as it is.
 
 =========================  =====================================================================
 noise                      and why not the other
@@ -17,6 +20,7 @@ noise                      and why not the other
 √(A² − 1) codes, display   the same width, but A is the slope of all that comes between, it needs
                            the photograph once more in the display's pass, and is even on both
                            sides of a code where the step is not
+noise alone                hides edges of bands; their means still are a staircase
 =========================  =====================================================================
 
 The pattern is blue noise (void and cluster), still, as the photograph's own grain is. Share of the
@@ -37,7 +41,7 @@ from numpy.typing import NDArray
 
 from andon.quantities import CameraFrame
 
-__all__ = ["blue_noise", "dithered", "noise_reach"]
+__all__ = ["blue_noise", "dithered", "within_steps"]
 
 Float = NDArray[np.float64]
 
@@ -46,41 +50,75 @@ TILE_PX = 64
 SIGMA_PX, FIRST_SHARE = 1.5, 0.1
 # Where the tile begins in each channel, (row, column): a third of it apart.
 OFFSETS = ((0, 0), (21, 42), (42, 21))
+# Sides of the surroundings that tell where in its step a value lies: the widest that are even. As
+# their spread grows from the one to the other, in codes, they tell less: there is texture or noise.
+AROUND_PX = (33, 17, 9, 5)
+EVEN_CODES, BUSY_CODES = 0.4, 0.8
 # Of a step to either side: a half, less what float32 powers err by on the GPU.
 REACH = 0.49
-# Captured and relit light are half floats there: each rounds by up to 2⁻¹² of the value.
-HALF_ROUNDINGS = 2 * 2.0**-12
+# Captured and relit light are half floats there: each rounds by up to 2⁻¹² of the value, and the
+# smallest by 2⁻²⁵.
+HALF_ROUNDING, LEAST_ROUNDING = 2.0**-12, 2.0**-25
 
 
 def dithered(frame: CameraFrame, /) -> CameraFrame:
-    """The frame with noise of ±½ step of its codes, so that unchanged light keeps its bytes.
+    """The frame with each value elsewhere in its step, so that unchanged light keeps its bytes.
 
-    Values between two codes, as undistortion makes them, move by less: to the middle between
-    codes, where there is none left. Black stays black (borders are), and clipped white white.
-    Floats have no steps: their frame is returned as it is.
+    Black stays black (borders are), and clipped white white. Floats have no steps: their frame is
+    returned as it is.
     """
     if frame.code_step == 0:
         return frame
     linear = np.asarray(frame.linear, np.float64)
-    codes = np.asarray(frame.response.encode(linear), np.float64) / frame.code_step
-    nearest = np.round(codes)
-    room = np.maximum(noise_reach(frame) - np.abs(codes - nearest), 0)
+    codes, room = within_steps(frame)
     moved = codes + 2 * room * _tiled(linear.shape)
+    nearest = np.round(codes)
     inside = (nearest > 0) & (nearest < round(1 / frame.code_step))
     drawn = np.where(inside, frame.response.decode(moved * frame.code_step), linear)
     return replace(frame, linear=drawn.astype(np.float32))
 
 
-def noise_reach(frame: CameraFrame, /) -> Float:
-    """(H, W, 3) how far the noise goes to either side of a code, in steps: 0.49 and less.
+def within_steps(frame: CameraFrame, /) -> tuple[Float, Float]:
+    """Where in its step each value (H, W, 3) lies by its surroundings, in codes; and the room to
+    either side of it that noise has, in codes.
+
+    In texture values stay where they are, and have no room. Values between two codes, as
+    undistortion makes them, stay nearer to the same one.
+    """
+    linear = np.asarray(frame.linear, np.float64)
+    codes = np.asarray(frame.response.encode(linear), np.float64) / frame.code_step
+    nearest, reach = np.round(codes), _reach(frame, codes)
+    inner, busy = codes.copy(), np.ones_like(codes)
+    for size in AROUND_PX:
+        mean, spread = _surroundings(codes, size)
+        even = busy * np.clip((BUSY_CODES - spread) / (BUSY_CODES - EVEN_CODES), 0, 1)
+        inner += even * (mean - codes)
+        busy -= even
+    most = np.maximum(reach, np.abs(codes - nearest))
+    inner = np.clip(inner, nearest - most, nearest + most)
+    return inner, (1 - busy) * np.maximum(reach - np.abs(inner - nearest), 0)
+
+
+def _surroundings(codes: Float, size: int) -> tuple[Float, Float]:
+    """Mean and standard deviation of `size`² values around each (H, W, 3)."""
+    import cv2
+
+    mean = np.asarray(cv2.blur(codes, (size, size)), np.float64)
+    square = np.asarray(cv2.blur(codes * codes, (size, size)), np.float64)
+    return mean, np.sqrt(np.maximum(square - mean * mean, 0))
+
+
+def _reach(frame: CameraFrame, codes: Float) -> Float:
+    """(H, W, 3) how far a value may go to either side of its code: 0.49 codes and less.
 
     Less where half floats, in which the GPU holds light, are not much finer than the step: bright
     codes lose up to 0.13, those of 16 bits all but in the dark.
     """
-    linear = np.asarray(frame.linear, np.float64)
-    encode = frame.response.encode
-    rounded = encode(linear * (1 + HALF_ROUNDINGS)) - encode(linear)
-    return np.maximum(REACH - np.asarray(rounded, np.float64) / frame.code_step, 0)
+    response, step = frame.response, frame.code_step
+    edge = np.maximum(np.round(codes) - 0.5, 0) * step
+    light = np.asarray(response.decode(edge), np.float64)
+    rounded = light + 2 * np.maximum(light * HALF_ROUNDING, LEAST_ROUNDING)
+    return np.maximum(REACH - (np.asarray(response.encode(rounded), np.float64) - edge) / step, 0)
 
 
 def _tiled(shape: tuple[int, ...]) -> Float:

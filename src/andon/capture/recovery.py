@@ -14,6 +14,7 @@ Sources: Debevec & Malik 1997, equation 3.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,9 +39,9 @@ CODES = 256
 MIDDLE = 128  # Debevec & Malik's anchor: g(128) = 0
 # λ of the curve's smoothness, against hat weights of up to 127.
 SMOOTHNESS = 50.0
-# Equations from photographs; Debevec & Malik ask for more than there are codes. Ten times as many
-# change the residual of the memorial series by 2 %.
-EQUATIONS = 4000
+# Equations from photographs; Debevec & Malik ask for more than there are codes. With 4000 a third
+# of the memorial series' codes had none.
+EQUATIONS = 20_000
 # Pixels whose worst residual exceeds the median's so many times are things that move, or dirt;
 # those of fewer codes than the least are noise.
 OUTLIER, LEAST_OUTLIER_CODES = 3.0, 6.0
@@ -146,21 +147,35 @@ def _samples(bracket: Bracket) -> NDArray[np.int64]:
         [picture[rows, columns].sum(axis=-1, dtype=np.int64) for picture in bracket.codes], axis=0
     )
     count = min(len(rows), max(EQUATIONS // len(bracket.codes), CODES))
-    spread = np.argsort(total, kind="stable")[np.linspace(0, len(rows) - 1, count).astype(int)]
+    spread = _spread(total, count)
     at = rows[spread], columns[spread]
     return np.stack([picture[at] for picture in bracket.codes], axis=1).astype(np.int64)
 
 
+def _spread(brightness: NDArray[np.int64], count: int) -> NDArray[np.intp]:
+    """Indices of up to `count` pixels: half evenly over their ranks, half over their brightness.
+
+    Ranks alone leave out what few pixels show: the windows of a church.
+    """
+    order = np.argsort(brightness, kind="stable")
+    ranks = np.linspace(0, len(order) - 1, count - count // 2).astype(int)
+    levels = np.linspace(brightness.min(), brightness.max(), count // 2)
+    reached = np.searchsorted(brightness[order], levels)
+    return order[np.unique(np.concatenate([ranks, reached]))]
+
+
 def _channel(codes: NDArray[np.int64], log_seconds: Float) -> ChannelCurve:
     """g of one channel from (n, photographs) codes."""
-    weights, fits = HAT[codes], np.ones(len(codes), bool)
+    rises = _rises(codes, log_seconds)
+    fits, weights = rises, HAT[codes] * rises[:, None]
     solved = _Solved(codes, log_seconds, weights)
     for _ in range(ROUNDS):
         # In codes, in which noise is the same everywhere: logarithms of dark ones spread.
         slope = np.maximum(np.gradient(solved.curve), 1e-4)[codes]
         residual = np.abs(solved.residual) / slope
         worst = np.where(weights > 0, residual, 0.0).max(axis=1)
-        fits = worst <= max(OUTLIER * 1.4826 * float(np.median(worst)), LEAST_OUTLIER_CODES)
+        usual = OUTLIER * 1.4826 * float(np.median(worst[rises]))
+        fits = rises & (worst <= max(usual, LEAST_OUTLIER_CODES))
         solved = _Solved(codes, log_seconds, weights * fits[:, None])
     curve = solved.curve
     support = _support(codes, weights * fits[:, None])
@@ -171,6 +186,17 @@ def _channel(codes: NDArray[np.int64], log_seconds: Float) -> ChannelCurve:
     return ChannelCurve(curve, forced, support, float(fits.mean()), _fall(solved, support))
 
 
+def _rises(codes: NDArray[np.int64], log_seconds: Float) -> NDArray[np.bool_]:
+    """(n,) pixels that are nowhere darker, beyond noise, in a longer exposure.
+
+    Least squares follow what moved a long way before they can tell it. Where most pixels fall it is
+    not they that moved: all are kept, and contradict each other.
+    """
+    ordered = codes[:, np.argsort(log_seconds, kind="stable")]
+    rises = (np.diff(ordered, axis=1) >= -LEAST_OUTLIER_CODES).all(axis=1)
+    return rises if rises.mean() > 0.5 else np.ones(len(codes), bool)
+
+
 class _Solved:
     """Least squares for g (256,) and ln E (n,), by the normal equations.
 
@@ -179,24 +205,22 @@ class _Solved:
     """
 
     def __init__(self, codes: NDArray[np.int64], log_seconds: Float, weights: Float) -> None:
-        flat, weight = codes.ravel(), weights.ravel() ** 2
-        pixel = np.repeat(np.arange(len(codes)), codes.shape[1])
-        times = np.tile(log_seconds, len(codes))
-        total = np.bincount(pixel, weight, len(codes)) + 1e-9
-        matrix = np.diag(np.bincount(flat, weight, CODES))
-        right = np.bincount(flat, weight * times, CODES)
-        link = np.zeros((len(codes), CODES))
-        np.add.at(link, (pixel, flat), weight)
-        known = np.bincount(pixel, weight * times, len(codes))
-        matrix = matrix - link.T @ (link / total[:, None])
-        right = right - link.T @ (known / total)
-        matrix += _smoothness()
+        weight = weights**2
+        total = weight.sum(axis=1) + 1e-9
+        known = weight @ log_seconds
+        share = weight / total[:, None]
+        right = _sums(codes, weight * log_seconds - share * known[:, None])
+        matrix = np.diag(_sums(codes, weight))
+        # What the elimination of ln E ties together: the codes that one pixel has.
+        pairs = codes[:, :, None] * CODES + codes[:, None, :]
+        ties = np.bincount(pairs.ravel(), (weight[:, :, None] * share[:, None, :]).ravel(), CODES**2)
+        matrix = matrix - ties.reshape(CODES, CODES) + _smoothness()
         matrix[MIDDLE, MIDDLE] += weight.sum() + 1.0  # g(128) = 0
         curve = np.linalg.solve(matrix, right)
         self.curve = curve - curve[MIDDLE]
-        light = (link @ self.curve - known) / total
-        self.residual = self.curve[codes] - light[:, None] - log_seconds
-        self._matrix, self._squares = matrix, float(weight @ self.residual.ravel() ** 2)
+        exposure = self.curve[codes] - log_seconds
+        self.residual = exposure - (share * exposure).sum(axis=1, keepdims=True)
+        self._matrix, self._squares = matrix, float((weight * self.residual**2).sum())
         self._free = int((weight > 0).sum() - len(codes) - CODES)
 
     def error_of(self, first: int, second: int) -> float:
@@ -207,6 +231,12 @@ class _Solved:
         return float(np.sqrt(variance * (pick @ np.linalg.solve(self._matrix, pick))))
 
 
+def _sums(codes: NDArray[np.int64], values: Float) -> Float:
+    """(256,) sum of the values that stand at each code."""
+    return np.bincount(codes.ravel(), values.ravel(), CODES)
+
+
+@cache
 def _smoothness() -> Float:
     """λ²·Σ w²·(g″)² as a matrix, (256, 256)."""
     bend = np.zeros((CODES - 2, CODES))

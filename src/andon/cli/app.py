@@ -9,6 +9,7 @@ import typer
 
 from andon.cli.bake_app import bake_app
 from andon.cli.calibrate_app import calibrate_app
+from andon.cli.depth_app import depth_app
 from andon.cli.glare_app import glare_app
 from andon.cli.options import EngineOption, RelightOptions, takes
 from andon.cli.probes import probes_app
@@ -321,6 +322,7 @@ def bench(
 
 app.add_typer(bake_app, name="bake")
 app.add_typer(calibrate_app, name="calibrate")
+app.add_typer(depth_app, name="depth")
 app.add_typer(probes_app, name="probes")
 app.add_typer(glare_app, name="glare")
 lamp_app = typer.Typer()

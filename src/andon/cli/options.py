@@ -98,8 +98,8 @@ class RelightOptions:
     confidence: Annotated[
         Path | None,
         typer.Option(
-            help="How far each pixel may be trusted, and why not. PNG: expected error and causes in "
-            "false colours; EXR: numbers."
+            help="How far each pixel may be trusted, and why not. PNG: expected error in false "
+            "colours, with its causes; EXR: numbers."
         ),
     ] = None
     seen: Annotated[

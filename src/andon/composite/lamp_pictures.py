@@ -70,7 +70,8 @@ class LampPictures:
         self._body_group = self._group(self._nothing.view)
         self._bodies = self._body_pipeline("body_corner", "body_light")
         self._traced = self._body_pipeline("fullscreen", "traced_light")
-        self._traced_group: tuple[Any, BindGroup] | None = None
+        self._shells = self._body_pipeline("fullscreen", "shell_light")
+        self._picture_groups: dict[Any, tuple[Any, BindGroup]] = {}
 
     def _group(self, traced: Any) -> BindGroup:
         own = {2: ("uniform", self._ambient), 3: ("float", traced)}
@@ -105,7 +106,8 @@ class LampPictures:
         `seen` is the G-buffer of the frame, which knows where the bodies are.
         """
         discs = drawn_lamps(lamps, self.view.position)
-        if not discs and not seen.bodies and seen.body_light is None:
+        pictures = seen.body_light, seen.shell_light
+        if not discs and not seen.bodies and pictures == (None, None):
             return False
         render = encoder.begin_render_pass(
             label="lamps",
@@ -132,6 +134,7 @@ class LampPictures:
             return whole
         found = [disc_rectangle(self.view, disc.position_m, disc.radius_m) for disc in discs]
         found += [body_rectangle(self.view, body.positions) for body in seen.bodies]
+        found += [] if seen.shells is None else [seen.shells.rectangle]
         inside = np.array([one for one in found if one is not None]).reshape(-1, 4)
         if not len(inside):
             return (0, 0, 0, 0)
@@ -140,12 +143,8 @@ class LampPictures:
         return left, top, right - left, bottom - top
 
     def _encode_bodies(self, render: Any, seen: Any) -> None:
-        if seen.body_light is not None:
-            if self._traced_group is None or self._traced_group[0] is not seen.body_light:
-                self._traced_group = (seen.body_light, self._group(seen.body_light.view))
-            render.set_pipeline(self._traced)
-            render.set_bind_group(0, self._traced_group[1].group)
-            render.draw(3)
+        self._encode_picture(render, self._traced, seen.body_light)
+        self._encode_picture(render, self._shells, seen.shell_light)
         if seen.bodies:
             render.set_pipeline(self._bodies)
             render.set_bind_group(0, self._body_group.group)
@@ -154,6 +153,17 @@ class LampPictures:
             render.set_vertex_buffer(1, body.light)
             render.set_index_buffer(body.indices, "uint32")
             render.draw_indexed(body.count)
+
+    def _encode_picture(self, render: Any, pipeline: Any, light: Any) -> None:
+        """Light that is a picture; None: there is none."""
+        if light is None:
+            return
+        made = self._picture_groups.get(pipeline)
+        if made is None or made[0] is not light:
+            made = self._picture_groups[pipeline] = (light, self._group(light.view))
+        render.set_pipeline(pipeline)
+        render.set_bind_group(0, made[1].group)
+        render.draw(3)
 
     def _encode_discs(self, render: Any, discs: Sequence[Disc], luminance_per_unit: float) -> None:
         """Far to near, each within its own rectangle."""

@@ -49,7 +49,10 @@ class GpuView:
         self.has_lamps = False
         view = frame.view
         start = engine.start
-        self.surface = SurfaceStage(gpu, prepared.surface, view, start.bodies, start.movers)
+        shells = None if prepared.shells is None else prepared.shells.views[view.name]
+        self.surface = SurfaceStage(
+            gpu, prepared.surface, view, start.bodies, start.movers, shells
+        )
         seen = self.surface.surface
         self.composite = composite.CompositeStage(
             gpu,
@@ -59,6 +62,7 @@ class GpuView:
             seen.view_buffer,
             seen.emitted_cd_m2,
             engine.taking,
+            prepared.measured.get(view.name),
         )
         self.composite.load(frame)
         self.luminance = make_texture(gpu, "rgba16float", view.width, view.height, label="light")
@@ -106,7 +110,8 @@ class GpuView:
         frame = self.frame
         self.glare: GlareView | None = None
         shown, through = self.luminance, prepared.exposure.see_through
-        unlit = None if through is None else unlit_linear(frame, prepared.ambient)
+        measured = prepared.measured.get(frame.view.name)
+        unlit = None if through is None else unlit_linear(frame, prepared.ambient, measured)
         if prepared.glare is not None:
             real = None if through is None or unlit is None else ost.real_light(unlit, through)
             hiding = prepared.surface.shadow_casters

@@ -50,8 +50,8 @@ def depth_from_raw(raw: Float, view: View, encoding: DepthEncoding, /, *, file: 
             f"is {raw.shape[1]}×{raw.shape[0]} px but the camera is {view.width}×{view.height}",
             file=file,
             field="surface.depth",
-            remedy="give depth and camera of the same picture; depth may have other pixels than it, "
-            "but the same sides",
+            remedy="give depth and camera of one picture; the depth may have fewer pixels, but "
+            "the same sides",
         )
     raw = np.where(np.isin(raw, encoding.invalid) | ~np.isfinite(raw), np.nan, raw)
     depth = _metres(raw, view, encoding, file)

@@ -102,6 +102,16 @@ class ShellsInView:
         light = np.where(seen.is_object[..., None], 0.0, self.light(bodies))
         return replace(seen, shell_cd_m2=light)
 
+    @property
+    def rectangle(self) -> tuple[int, int, int, int]:
+        """(x, y, width, height) in pixels that holds all of them; empty where none is seen."""
+        pixels = [seen.pixel for seen in self.samples.values()]
+        rows, columns = np.divmod(np.concatenate(pixels), self.view.width)
+        if not len(rows):
+            return 0, 0, 0, 0
+        left, top = int(columns.min()), int(rows.min())
+        return left, top, int(columns.max()) + 1 - left, int(rows.max()) + 1 - top
+
     def light(self, bodies: Sequence[Body], /) -> Float:
         """(H, W, 3) cd/m² of the shells' own light, as bright as `bodies` are now."""
         total = np.zeros((self.shell_id.size, 3))

@@ -34,8 +34,9 @@ from andon.spaces import View
 from andon.surface import reference
 from andon.surface.body_mesh import BodyMesh
 from andon.surface.draws import Draw, storage_buffer
-from andon.surface.model import SurfaceModel
+from andon.surface.model import EMPTY_GEOMETRY, SurfaceModel
 from andon.surface.mover_mesh import MoverMesh
+from andon.surface.shells import ShellsInView
 
 __all__ = ["GpuSurface", "SurfaceStage"]
 
@@ -54,6 +55,7 @@ class GpuSurface:
     emitted_cd_m2 : (materials, 3), what the materials of virtual objects emit.
     bodies : luminous bodies as triangles with their light; none where they are traced.
     body_light : their light as a picture, cd/m², where they are traced.
+    shells, shell_light : what is seen of real shells, and their own light as a picture, cd/m².
     model : what is seen; says which pixels have a material and a position of their own.
     """
 
@@ -68,6 +70,8 @@ class GpuSurface:
         self.emitted_cd_m2 = emitted_cd_m2
         self.bodies: tuple[BodyMesh, ...] = ()
         self.body_light: Texture | None = None
+        self.shells: ShellsInView | None = None
+        self.shell_light: Texture | None = None
         self.texture = make_texture(gpu, "rgba32uint", view.width, view.height, label="g-buffer")
         self.view_buffer = uniform_buffer(gpu, VIEW_RECORD.dtype.itemsize, "view")
         write_buffer(gpu, self.view_buffer, pack_view(view))
@@ -106,25 +110,29 @@ class SurfaceStage:
         view: View,
         bodies: Sequence[Body] = (),
         movers: Sequence[Geometry] = (),
+        shells: ShellsInView | None = None,
     ) -> None:
         self.gpu, self.model, self.view = gpu, model, view
         _check_bodies(bodies)
-        self._has_bodies = len(bodies) > 0
+        drawn = [(number, body) for number, body in enumerate(bodies) if not body.real]
+        self._has_bodies = len(drawn) > 0
         objects = model.objects
         self.surface = GpuSurface(gpu, view, model.emitted_cd_m2, model)
         self._on_host = view.projection != "pinhole"
-        has_picture = view.name in model.depth or model.is_distant_only
+        # What of a real surface is a shell is known by its pixels, so meshes are traced for it.
+        has_picture = view.name in model.depth or model.is_distant_only or shells is not None
         self._draws: list[Draw] = []
         self._bodies: list[BodyMesh] = []
         self._movers: list[MoverMesh] = []
         self._background: Texture | None = None
         self._still: Surface | None = None
-        if self._on_host or (has_picture and not model.has_objects and not bodies):
-            self._still = reference.see(model, view)
+        self._show_shells(shells)
+        if self._on_host or (has_picture and not model.has_objects and not drawn):
+            self._still = reference.see(model, view, shells)
             self.surface.texture.write(pack_surface(self._still))
             return
         if has_picture:
-            real = reference.see(SurfaceModel(depth=model.depth, normals=model.normals), view)
+            real = reference.see(replace(model, objects=EMPTY_GEOMETRY), view, shells)
             self._background = make_texture(gpu, "rgba32uint", view.width, view.height)
             self._background.write(pack_surface(real))
         self._make_pipelines()
@@ -138,7 +146,7 @@ class SurfaceStage:
             draw = Draw(gpu, self.bind, geometry, flags, mesh=mesh, first_slot=first, bends=True)
             self._draws.append(draw)
             self._movers.append(mesh)
-        for number, body in enumerate(bodies):
+        for number, body in drawn:
             mesh = BodyMesh(gpu, body, number)
             flags = VALID | OBJECT | ((number + 1) << BODY_SHIFT)
             look = replace(body.geometry, materials=(Material(reflectance=body.reflectance),))
@@ -155,6 +163,26 @@ class SurfaceStage:
     def is_static(self) -> bool:
         """Nothing is drawn: the G-buffer was uploaded once."""
         return not self._draws
+
+    def _show_shells(self, shells: ShellsInView | None) -> None:
+        """Makes room for the light of real shells."""
+        self._lit: list[Body] = []
+        if shells is not None:
+            self.surface.shells = shells
+            size = (self.view.width, self.view.height)
+            self.surface.shell_light = make_texture(self.gpu, "rgba32float", *size, label="shells")
+
+    def _light_shells(self, bodies: Sequence[Body]) -> None:
+        """Brings the light of real shells up to date."""
+        shells, picture = self.surface.shells, self.surface.shell_light
+        if shells is None or picture is None:
+            return
+        real = [body for body in bodies if body.real]
+        if len(real) == len(self._lit) and all(map(_as_bright, real, self._lit)):
+            return
+        self._lit = real
+        light = shells.light(bodies)
+        picture.write(np.concatenate([light, np.zeros_like(light[..., :1])], axis=-1))
 
     def _make_pipelines(self) -> None:
         gpu, view, model = self.gpu, self.view, self.model
@@ -256,13 +284,15 @@ class SurfaceStage:
 
         `bodies` and `movers` are those of the start, where they are now.
         """
+        self._light_shells(bodies)
+        bodies_drawn = [body for body in bodies if not body.real]
         if self._still is not None:
-            if bodies or movers:
+            if bodies_drawn or movers:
                 self._see_on_host(self._still, bodies, movers)
             return self.surface
         for moving, geometry in zip(self._movers, movers, strict=True):
             moving.move(geometry)
-        for mesh, body in zip(self._bodies, bodies, strict=True):
+        for mesh, body in zip(self._bodies, bodies_drawn, strict=True):
             mesh.move(body)
         render = encoder.begin_render_pass(
             label="surface",
@@ -283,6 +313,12 @@ class SurfaceStage:
             draw.encode(render)
         render.end()
         return self.surface
+
+
+def _as_bright(body: Body, other: Body) -> bool:
+    return np.array_equal(body.outside_cd_m2, other.outside_cd_m2) and np.array_equal(
+        body.inside_cd_m2, other.inside_cd_m2
+    )
 
 
 def _check_bodies(bodies: Sequence[Body]) -> None:

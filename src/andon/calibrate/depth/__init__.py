@@ -10,9 +10,9 @@ inverse  1/z = a·r + b   MiDaS (Ranftl et al. 2022), Depth         stays a plan
 depth    z = a·r + b     Marigold (Ke et al. 2024)                 is bent, if it is slanted
 ======== =============== ========================================= ==============================
 
-That planes stay planes under inverse depth is projective geometry: adding b to 1/z maps a point P to
-P/(1 + b·z), a collineation. So flatness says nothing of *its* shift; directions do: a floor that is
-level, two walls that stand at right angles.
+That planes stay planes under inverse depth is projective geometry: adding b to 1/z maps a point P
+to P/(1 + b·z), a collineation. So flatness says nothing of *its* shift; directions do: a floor that
+is level, two walls that stand at right angles.
 
 ================================ ==================== ====================
 known                            gives the scale      gives the shift

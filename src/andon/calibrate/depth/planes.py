@@ -53,8 +53,13 @@ class FlatPixels:
         """m (3,) in 1/m at scale exp(log_scale) and shift ratio s = b/a."""
         scale = np.exp(log_scale)
         if self.affine is not None:
-            return scale * (self.affine + [0, 0, ratio])
+            return scale * (self.affine + np.array([0, 0, ratio]))
         return self._moments.plane(ratio) / scale
+
+    @cached_property
+    def middle(self) -> float:
+        """The median of `values`."""
+        return float(np.median(self.values))
 
     @cached_property
     def _moments(self) -> _Moments:
@@ -79,7 +84,7 @@ def shifts_to_try(values: Float, /) -> Float:
 
 
 def flat_pixels(relative: RelativeDepth, plane: Plane, /) -> FlatPixels:
-    """The summary of a plane's pixels. Raises `InputError` where they are too few or on one line."""
+    """A plane's pixels, summarised. Raises `InputError` where they are too few or on one line."""
     chosen = plane.mask & np.isfinite(relative.values)
     count = int(chosen.sum())
     if count < LEAST_PIXELS:
@@ -100,12 +105,13 @@ def flat_pixels(relative: RelativeDepth, plane: Plane, /) -> FlatPixels:
 
 
 def _affine(values: Float, rays: Float) -> Float:
-    """(3,) of values = affine·rays, by Cauchy's weights: what lies before a wall does not tilt it."""
+    """(3,) of values = affine·rays, by Cauchy's weights: what stands before a wall tilts it not."""
     weight = np.ones(len(values))
     found = np.zeros(3)
     for _ in range(ROBUST_STEPS):
         root = np.sqrt(weight)
-        found = np.linalg.lstsq(root[:, None] * rays, root * values, rcond=None)[0]
+        solved = np.linalg.lstsq(root[:, None] * rays, root * values, rcond=None)[0]
+        found = np.asarray(solved, np.float64)
         error = values - rays @ found
         weight = _cauchy(error, np.abs(values).max())
     return found
@@ -141,7 +147,11 @@ class _Moments:
     def plane(self, ratio: float) -> Float:
         """(3,) m·a: least squares of (r + s)·(m·ray) = 1."""
         normal = self.constant + ratio * (self.linear + ratio * self.square)
-        return np.linalg.lstsq(normal, self.value_ray + ratio * self.ray, rcond=None)[0]
+        try:
+            solved = np.linalg.solve(normal, self.value_ray + ratio * self.ray)
+        except np.linalg.LinAlgError:  # r + s is 0 wherever it counts: no plane at all
+            return np.full(3, np.nan)
+        return np.asarray(solved, np.float64)
 
 
 def _flattening_shift(values: Float, rays: Float) -> tuple[float, float]:
@@ -170,5 +180,6 @@ def _flattening_shift(values: Float, rays: Float) -> tuple[float, float]:
     information = scaled.T @ scaled * min(1.0, INDEPENDENT / len(values))
     if np.linalg.cond(information) > 1e13:
         return float(found.values[0]), float("inf")
-    variance = np.linalg.inv(information)[0, 0] / np.linalg.norm(found.jacobian[:, 0]) ** 2
-    return float(found.values[0]), float(np.sqrt(variance))
+    variance = float(np.diag(np.asarray(np.linalg.inv(information), np.float64))[0])
+    error = float(np.sqrt(variance) / np.linalg.norm(found.jacobian[:, 0]))
+    return float(found.values[0]), error

@@ -9,6 +9,7 @@
 @group(0) @binding(6) var baked_picture: texture_2d<f32>;
 
 fn baked_lux(point: SurfacePoint, pixel: vec2f) -> vec3f {
-  let takes = (point.flags >> BODY_SHIFT) == 0u && (taking(point) & REFUSING) == 0u;
+  let is_body = (point.flags & OBJECT) != 0u && (point.flags >> BODY_SHIFT) > 0u;
+  let takes = !is_body && (taking(point) & REFUSING) == 0u;
   return select(vec3f(0.0), textureLoad(baked_picture, vec2i(pixel), 0).xyz, takes);
 }

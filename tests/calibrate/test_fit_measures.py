@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from andon.calibrate.lamps.measures import best_gain, best_gains, encoded, measured
-from andon.calibrate.lamps.regions import errors_by_region
 from andon.calibrate.lamps.motion import NOT_ASKED
+from andon.calibrate.lamps.regions import errors_by_region
 from andon.calibrate.lamps.target import Target
 from andon.responses import LINEAR, SRGB, Response
 
 
 def test_errors_of_two_pixels_by_hand():
     wanted = np.array([[0.25, 0.25, 0.25], [0.5, 0.5, 0.5]])
-    found = measured(wanted + [[0.1, 0, 0], [0, 0, 0.2]], wanted, LINEAR)
+    found = measured(np.add(wanted, [[0.1, 0, 0], [0, 0, 0.2]]), wanted, LINEAR)
     rmse = np.sqrt((0.01 + 0.04) / 6)
     assert found.rmse_linear == pytest.approx(rmse)
     assert found.rmse_encoded == pytest.approx(rmse)

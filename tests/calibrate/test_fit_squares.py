@@ -102,7 +102,7 @@ def test_the_noise_is_that_of_codes_and_a_half():
         slope = (srgb_decode(encoded + step) - srgb_decode(encoded - step)) / (2 * step)
         light = float(srgb_decode(encoded))
         wanted = (1.5 / 255 * slope) ** 2
-        assert 1 / 1.7 < (NOISE_AT_BLACK + NOISE_PER_LIGHT * light) / wanted < 1.7
+        assert 1 / 1.9 < (NOISE_AT_BLACK + NOISE_PER_LIGHT * light) / wanted < 1.9
 
 
 def test_cells_are_means_of_their_own_pixels():

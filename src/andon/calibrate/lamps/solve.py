@@ -35,9 +35,9 @@ __all__ = ["Problem", "Solution", "noise_variance", "solve"]
 
 Float = NDArray[np.float64]
 
-# Variance of linear values, of white 1: within a factor of 1.7 that of 1.5 codes of 8 bits sRGB,
+# Variance of linear values, of white 1: within a factor of 1.9 that of 1.5 codes of 8 bits sRGB,
 # what quantisation, compression and a good exposure leave.
-NOISE_AT_BLACK, NOISE_PER_LIGHT = 1.5e-7, 1.2e-4
+NOISE_AT_BLACK, NOISE_PER_LIGHT = 1.3e-7, 1e-4
 # Tuning constants with 95 % efficiency for normal errors.
 HUBER, TUKEY = 1.345, 4.685
 NORMAL_MEDIAN = 0.6745

@@ -1,9 +1,9 @@
 """Real photographs of one thing under different known lights: from one of them, the others.
 
-``psm_uw`` of ``ANDON_DATA`` (README.md there): twelve photographs each of a matte grey sphere and of
-a glazed cat, camera fixed, one distant light each, linear 8-bit values. For every ordered pair (i, j)
-Andon relights photograph i, as the scene file of a user would: light i, a known source of E0, is
-removed; light j is added; the surface is a picture of normals and one of ρ.
+``psm_uw`` of ``ANDON_DATA`` (README.md there): twelve photographs each of a matte grey sphere and
+of a glazed cat, camera fixed, one distant light each, linear 8-bit values. For every ordered pair
+(i, j) Andon relights photograph i, as the scene file of a user would: light i, a known source of
+E0, is removed; light j is added; the surface is a picture of normals and one of ρ.
 
 ===================  ==============================================================================
 what                 is known from
@@ -31,7 +31,15 @@ from andon.files.pictures.write import write_exr, write_png
 from andon.verify.photometric_stereo import photometric_stereo
 from andon.verify.registry import NotShown
 
-__all__ = ["FOLDER", "OBJECTS", "Known", "Photographs", "known_without", "photographs", "write_pair"]
+__all__ = [
+    "FOLDER",
+    "OBJECTS",
+    "Known",
+    "Photographs",
+    "known_without",
+    "photographs",
+    "write_pair",
+]
 
 Float = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
@@ -57,8 +65,8 @@ class Photographs:
     name : ``sphere`` or ``cat``.
     codes : (k, H, W, 3) linear, 0…255.
     mask : (H, W) where the thing is.
-    directions : (k, 3) unit, towards the lights; x right, y up, z to the camera, which are the world
-        axes of a camera without a pose.
+    directions : (k, 3) unit, towards the lights; x right, y up, z to the camera, which are the
+        world axes of a camera without a pose.
     """
 
     name: str
@@ -148,6 +156,7 @@ def write_pair(
     Pictures that are there already are kept: all pairs of one target share them. Without `with_map`
     nothing but the photograph tells what the surface reflects.
     """
+    folder.mkdir(parents=True, exist_ok=True)
     target = known.target
     photo, normals = f"{shots.name}.{source}.png", f"normals-{target}.exr"
     reflectance = f"reflectance-{target}.exr"
@@ -180,6 +189,7 @@ def _numbers(values: Sequence[float] | Float) -> str:
 
 # A distant light needs no camera but its axes: any angle of view gives the same picture.
 _SCENE = """\
+[scene]
 photometry = "relative"
 
 [rig.camera]

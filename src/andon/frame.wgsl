@@ -13,9 +13,9 @@
 @group(0) @binding(0) var gbuffer: texture_2d<u32>;
 @group(0) @binding(1) var<uniform> view: ViewRecord;
 @group(0) @binding(2) var<uniform> ambient: AmbientRecord;
-// The captured picture, linear; where E0 is a picture: what is left of it after dimming.
+// The captured picture, linear; where E0 or ρ is a picture: what is left of it after dimming.
 @group(0) @binding(3) var captured: texture_2d<f32>;
-// Where E0 is a picture: what one lux adds.
+// Where E0 or ρ is a picture: what one lux adds.
 @group(0) @binding(4) var per_lux: texture_2d<f32>;
 // Of the materials of virtual objects, MAX_OBJECT_MATERIALS of them: cd/m² that they emit, and
 // (taking.wgsl) what light they take.

@@ -129,9 +129,7 @@ class Frame:
         """How far each pixel may be trusted, and why not; made when it is first asked for."""
         from andon.engines.confidence import confidence_of_frame
 
-        if self.prepared is None:
-            raise InputError("is missing: confidence needs a drawn frame", field="frame.prepared")
-        return confidence_of_frame(self, self.prepared)
+        return confidence_of_frame(self)
 
 
 class Renderer:
@@ -330,6 +328,7 @@ def relight(
     response: Response = SRGB,
     photometry: Photometry = "absolute",
     engine: EngineName = "auto",
+    reflectance_map: NDArray[Any] | None = None,
 ) -> Frame:
     """Relights arrays: for those who have a picture and its depth in memory already.
 
@@ -342,6 +341,8 @@ def relight(
     depth_m : (H, W) metres along the optical axis; NaN, 0 and infinity are holes.
     ambient_lux : E0 that the photograph was taken in: number, three channels or (H, W, 3), > 0.
     dimming : share of E0 that is left, ≥ 0; number or three channels.
+    reflectance_map : (H, W, 3) linear ρ in [0, 1], that added light falls on where E0 is too weak
+        for the photograph to tell it; None: only the photograph tells.
 
     Raises
     ------
@@ -359,6 +360,7 @@ def relight(
         dimming=dimming,
         response=response,
         photometry=photometry,
+        reflectance_map=reflectance_map,
     )
     return Renderer(prepared, engine).render()
 

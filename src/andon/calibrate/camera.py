@@ -31,7 +31,7 @@ from andon.capture.recovery import CODES, Recovery, recover_curves, seconds_of
 from andon.errors import InputError
 from andon.responses import Response
 
-__all__ = ["CameraCalibration", "calibrate_camera", "check_calibration"]
+__all__ = ["CHANNELS", "CameraCalibration", "calibrate_camera", "check_calibration"]
 
 Float = NDArray[np.float64]
 

@@ -52,16 +52,17 @@ SIGMA_PX, FIRST_SHARE = 1.5, 0.1
 OFFSETS = ((0, 0), (21, 42), (42, 21))
 # Sides of the surroundings that tell where in its step a value lies: the widest that are even. As
 # their spread grows from the one to the other, in codes, they tell less: there is texture or noise.
-AROUND_PX = (17, 9, 5)
+AROUND_PX = (33, 17, 9, 5)
 EVEN_CODES, BUSY_CODES = 0.4, 0.8
 # Of a step to either side: a half, less what float32 powers err by on the GPU.
 REACH = 0.49
-# Captured and relit light are half floats there: each rounds by up to 2⁻¹² of the value.
-HALF_ROUNDINGS = 2 * 2.0**-12
+# Captured and relit light are half floats there: each rounds by up to 2⁻¹² of the value, and the
+# smallest by 2⁻²⁵.
+HALF_ROUNDING, LEAST_ROUNDING = 2.0**-12, 2.0**-25
 
 
 def dithered(frame: CameraFrame, /) -> CameraFrame:
-    """The frame with each value somewhere else in its step, so that unchanged light keeps its bytes.
+    """The frame with each value elsewhere in its step, so that unchanged light keeps its bytes.
 
     Black stays black (borders are), and clipped white white. Floats have no steps: their frame is
     returned as it is.
@@ -86,7 +87,7 @@ def within_steps(frame: CameraFrame, /) -> tuple[Float, Float]:
     """
     linear = np.asarray(frame.linear, np.float64)
     codes = np.asarray(frame.response.encode(linear), np.float64) / frame.code_step
-    nearest, reach = np.round(codes), _reach(frame, linear)
+    nearest, reach = np.round(codes), _reach(frame, codes)
     inner, busy = codes.copy(), np.ones_like(codes)
     for size in AROUND_PX:
         mean, spread = _surroundings(codes, size)
@@ -107,15 +108,17 @@ def _surroundings(codes: Float, size: int) -> tuple[Float, Float]:
     return mean, np.sqrt(np.maximum(square - mean * mean, 0))
 
 
-def _reach(frame: CameraFrame, linear: Float) -> Float:
+def _reach(frame: CameraFrame, codes: Float) -> Float:
     """(H, W, 3) how far a value may go to either side of its code: 0.49 codes and less.
 
     Less where half floats, in which the GPU holds light, are not much finer than the step: bright
     codes lose up to 0.13, those of 16 bits all but in the dark.
     """
-    encode = frame.response.encode
-    rounded = np.asarray(encode(linear * (1 + HALF_ROUNDINGS)) - encode(linear), np.float64)
-    return np.maximum(REACH - rounded / frame.code_step, 0)
+    response, step = frame.response, frame.code_step
+    edge = np.maximum(np.round(codes) - 0.5, 0) * step
+    light = np.asarray(response.decode(edge), np.float64)
+    rounded = light + 2 * np.maximum(light * HALF_ROUNDING, LEAST_ROUNDING)
+    return np.maximum(REACH - (np.asarray(response.encode(rounded), np.float64) - edge) / step, 0)
 
 
 def _tiled(shape: tuple[int, ...]) -> Float:

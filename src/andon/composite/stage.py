@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.composite.lamp_pictures import LampPictures
-from andon.composite.model import Ambient
+from andon.composite.model import Ambient, MeasuredSurface
+from andon.composite.per_lux import per_lux
 from andon.composite.records import AMBIENT_RECORD, STRUCTS, pack_ambient
 from andon.gpu.device import Gpu
 from andon.gpu.textures import make_texture, uniform_buffer, write_buffer
@@ -25,7 +26,7 @@ class CompositeStage:
     ----------
     resources : bindings 2 to 5 of group 0 of frame.wgsl.
     lamps : draws visible lamps and luminous bodies.
-    has_maps : E0 is a picture, or dimming is the paper's.
+    has_maps : E0 or ρ is a picture, or dimming is the paper's.
     """
 
     def __init__(
@@ -37,14 +38,18 @@ class CompositeStage:
         view_buffer: Any,
         emitted_cd_m2: NDArray[np.float64],
         taking: NDArray[np.uint8] | None = None,
+        measured: MeasuredSurface | None = None,
     ) -> None:
-        self.gpu, self.view, self.ambient = gpu, view, ambient
-        self.has_maps = ambient.lux_of(view.name).ndim == 3 or ambient.dimming_mode == "paper"
+        self.gpu, self.view, self.ambient, self.measured = gpu, view, ambient, measured
+        has_reflectance = measured is not None and measured.reflectance is not None
+        self.has_maps = (
+            ambient.lux_of(view.name).ndim == 3 or ambient.dimming_mode == "paper" or has_reflectance
+        )
         size = (view.width, view.height)
         self._captured = make_texture(gpu, "rgba16float", *size, label="captured")
-        per_lux = size if self.has_maps else (1, 1)
+        added = size if self.has_maps else (1, 1)
         # 1/E0 of a dark corner and of the sun are five decades apart: too many for half floats.
-        self._per_lux = make_texture(gpu, "rgba32float", *per_lux, label="per lux")
+        self._per_lux = make_texture(gpu, "rgba32float", *added, label="per lux")
         self._ambient = uniform_buffer(gpu, AMBIENT_RECORD.dtype.itemsize, "ambient")
         self._emitted = uniform_buffer(gpu, 16 * MAX_OBJECT_MATERIALS, "emitted")
         table = np.zeros((MAX_OBJECT_MATERIALS, 4), np.float32)
@@ -66,8 +71,7 @@ class CompositeStage:
         linear = np.asarray(frame.linear, np.float64)
         if self.has_maps:
             dimming = np.asarray(self.ambient.dimming)
-            per_lux = linear / self.ambient.lux_of(self.view.name)
-            self._per_lux.write(_with_alpha(per_lux))
+            self._per_lux.write(_with_alpha(per_lux(frame, self.ambient, self.measured)))
             if self.ambient.dimming_mode == "linear":
                 linear = linear * dimming
             else:

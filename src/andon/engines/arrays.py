@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.capture.still import frame_from_picture
-from andon.composite.model import Ambient
+from andon.composite.model import Ambient, MeasuredSurface
+from andon.composite.per_lux import map_scale
+from andon.engines.measured import checked_reflectance
 from andon.engines.prepared import Prepared
 from andon.errors import InputError
 from andon.files.pictures import Picture
 from andon.lamps import AnyAreaLamp, Lamp, body_of
-from andon.quantities import Photometry, photometric
+from andon.quantities import CameraFrame, Photometry, photometric
 from andon.responses import Response
 from andon.spaces import View
 from andon.surface.depth import DepthEncoding, depth_from_raw
@@ -34,6 +36,7 @@ def prepare_arrays(
     dimming: Any,
     response: Response,
     photometry: Photometry,
+    reflectance_map: Any = None,
 ) -> Prepared:
     """See `andon.relight`."""
     _check_types(view, lamps, response, photometry)
@@ -49,6 +52,7 @@ def prepare_arrays(
         response,
         luminance_per_unit=float(photometric(ambient.mean_lux)) / np.pi,
     )
+    measured = _measured(reflectance_map, frame, ambient)
     shining = tuple(_with_a_body(lamp) for lamp in lamps)
     bodies = tuple(body_of(x) for x in lamps if isinstance(x, AnyAreaLamp) and x.drawn)
     return Prepared(
@@ -58,6 +62,7 @@ def prepare_arrays(
         lamps=lambda _: shining,
         bodies=lambda _: bodies,
         photometry=photometry,
+        measured={} if measured is None else {view.name: measured},
     )
 
 
@@ -172,6 +177,18 @@ def _lux(ambient_lux: Any, view: View) -> NDArray[np.float64]:
     if not (np.isfinite(lux) & (lux > 0)).all():
         raise InputError("must be finite and > 0 lx everywhere", field="ambient_lux")
     return lux if lux.ndim == 3 else np.broadcast_to(lux, 3).copy()
+
+
+def _measured(reflectance_map: Any, frame: CameraFrame, ambient: Ambient) -> MeasuredSurface | None:
+    if reflectance_map is None:
+        return None
+    view = frame.view
+    wanted = f"an array ({view.height}, {view.width}, 3) of linear ρ"
+    rho = _numbers(reflectance_map, "reflectance_map", wanted)
+    if rho.shape != (*view.shape, 3):
+        raise InputError(f"must be {wanted}, got {rho.shape}", field="reflectance_map")
+    rho = checked_reflectance(rho, "reflectance_map")
+    return MeasuredSurface(map_scale(rho, frame, ambient) * rho)
 
 
 def _dimming(dimming: Any) -> tuple[float, float, float]:

@@ -12,9 +12,9 @@ from andon.capture.noise import noise_codes
 from andon.composite.confidence import Cause, Confidence, confidence_of
 from andon.composite.reference import relit_linear
 from andon.display.reference import shown_codes
+from andon.errors import InputError
 
 if TYPE_CHECKING:
-    from andon.engines.prepared import Prepared
     from andon.pipeline import Frame
 
 __all__ = ["confidence_of_frame"]
@@ -23,20 +23,23 @@ Float = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-def confidence_of_frame(frame: Frame, prepared: Prepared, /) -> Confidence:
-    """How far each pixel of `frame` may be trusted; `prepared` is what it was drawn of.
+def confidence_of_frame(frame: Frame, /) -> Confidence:
+    """How far each pixel of a frame that was drawn may be trusted.
 
     Light that glow and glare spread over a pixel is taken for certain. Codes are those of the
     camera's own display: of the tone ``fusion`` as without a tone, and of an optical see-through
     display those of its simulated view.
     """
-    captured = frame.captured
+    captured, prepared = frame.captured, frame.prepared
+    if prepared is None:
+        raise InputError("is missing: only what was drawn has it", field="frame.prepared")
     lux = np.asarray(frame.illuminance.lux, np.float64)
     linear = np.asarray(captured.linear, np.float64)
+    measured = prepared.measured.get(captured.view.name)
 
     def relit(light: Float) -> Float:
         changed: Any = light  # float64, so that steps of 16 bits are not lost
-        return relit_linear(replace(captured, linear=changed), prepared.ambient, lux)
+        return relit_linear(replace(captured, linear=changed), prepared.ambient, lux, measured)
 
     white = captured.luminance_per_unit
     spread = np.asarray(frame.luminance.cd_m2, np.float64) / white - relit(linear)

@@ -62,6 +62,7 @@ class GpuView:
             seen.view_buffer,
             seen.emitted_cd_m2,
             engine.taking,
+            prepared.measured.get(view.name),
         )
         self.composite.load(frame)
         self.luminance = make_texture(gpu, "rgba16float", view.width, view.height, label="light")
@@ -109,7 +110,8 @@ class GpuView:
         frame = self.frame
         self.glare: GlareView | None = None
         shown, through = self.luminance, prepared.exposure.see_through
-        unlit = None if through is None else unlit_linear(frame, prepared.ambient)
+        measured = prepared.measured.get(frame.view.name)
+        unlit = None if through is None else unlit_linear(frame, prepared.ambient, measured)
         if prepared.glare is not None:
             real = None if through is None or unlit is None else ost.real_light(unlit, through)
             hiding = prepared.surface.shadow_casters

@@ -178,8 +178,9 @@ class Surface(Table):
     )
     reflectance_map: Reference | None = Field(
         default=None,
-        description="Picture of ρ in the view, linear, instead of `reflectance`: where E0 is too "
-        "weak for the photograph to tell what the surface reflects, added light falls on this ρ.",
+        description="Picture of ρ in the view, EXR (linear) or PNG (sRGB codes), instead of "
+        "`reflectance`: where E0 is too weak for the photograph to tell what the surface reflects, "
+        "added light falls on this ρ, in the scale that the photograph shows elsewhere.",
     )
     occluder_triangles: Count = Field(
         default=30000,

@@ -254,20 +254,17 @@ class _Fit:
         if self.mask is not None:
             regions = {"inside": looked, "outside": self.target.seen & ~self.mask, **regions}
         regions |= {f"{name}_without_holes": region & ~holes for name, region in regions.items()}
-        found: dict[str, dict[str, Measures]] = {}
-        for name, region in regions.items():
-            if not region.any():
-                continue
-            here = wanted[region]
-            found[name] = {
-                "fitted": measured(predicted[region], here, response),
-                "unchanged": measured(photograph[region], here, response),
-                **{
-                    key: measured(gain * photograph[region], here, response, gain)
-                    for key, gain in gains.items()
-                },
-            }
-        return found
+        white = 1.0 if self.target.is_encoded else np.inf
+
+        def errors(region: Mask) -> dict[str, Measures]:
+            def off(picture: Float, gain: Float | None = None) -> Measures:
+                return measured(picture, wanted[region], response, gain, white=white)
+
+            own = photograph[region]
+            trivial = {name: off(gain * own, gain) for name, gain in gains.items()}
+            return {"fitted": off(predicted[region]), "unchanged": off(own), **trivial}
+
+        return {name: errors(region) for name, region in regions.items() if region.any()}
 
     def _fitted_scene(self, values: Any, chosen: Response | None) -> Scene | None:
         if self.scene is None:

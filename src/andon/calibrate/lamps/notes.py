@@ -14,7 +14,7 @@ NOTABLE_REJECTED = 0.1
 
 def notes_of(fit: LampFit, /) -> tuple[str, ...]:
     """One line each."""
-    return tuple([*_on_same(fit), *_on_motion(fit), *_on_terms(fit), *_on_error(fit)])
+    return (*_on_same(fit), *_on_motion(fit), *_on_terms(fit), *_on_error(fit))
 
 
 def _on_same(fit: LampFit) -> list[str]:

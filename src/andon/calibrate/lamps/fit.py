@@ -32,7 +32,7 @@ from andon.engines.reading import read_pictures, view_of
 from andon.errors import InputError
 from andon.lamps import GoniometricLamp
 from andon.pipeline import Frame
-from andon.quantities import photometric
+from andon.quantities import CameraFrame, photometric
 from andon.responses import Response
 from andon.scene import Scene
 from andon.spaces import View

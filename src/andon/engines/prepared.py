@@ -25,7 +25,6 @@ from andon.engines.photographless import (
     white_cd_m2,
 )
 from andon.engines.probes import SceneProbes, changed_since_bake, probes_of
-from andon.engines.real_shells import RealShells, real_shells
 from andon.engines.reading import (
     exposure_of,
     glow_of,
@@ -35,6 +34,7 @@ from andon.engines.reading import (
     source_of,
     view_of,
 )
+from andon.engines.real_shells import RealShells, real_shells
 from andon.errors import InputError
 from andon.glow.model import Glow
 from andon.lamps import Body, Lamp, resolve_bodies, resolve_lamps

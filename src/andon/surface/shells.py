@@ -1,8 +1,8 @@
 """Real shells: which pixels of a photograph show the shade of a lamp, and what else it takes up.
 
-The shade stands in the photograph and in its geometry, unlit. What the user states of it (a drum, a
-mesh) and what was measured agree within a margin only, and measured shades have holes: they are thin,
-often white, and end in the air. So both have a say::
+The shade stands in the photograph and in its geometry, unlit. What the user states of it (a drum,
+a mesh) and what was measured agree within a margin only, and measured shades have holes: they are
+thin, often white, and end in the air. So both have a say::
 
     pixel                                     its own light, w times
     ─────────────────────────────────────────────────────────────────────────────────────────
@@ -14,8 +14,8 @@ often white, and end in the air. So both have a say::
     shell                                     is not the whole pixel
     anything else                             0
 
-A stated outline that is too small thus leaves no dark ring, and one that is too large lights nothing
-that the geometry knows to be something else.
+A stated outline that is too small thus leaves no dark ring, and one that is too large lights
+nothing that the geometry knows to be something else.
 """
 
 from __future__ import annotations

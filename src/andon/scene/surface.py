@@ -74,9 +74,9 @@ class Depth(Table):
     )
     fill_px: Annotated[int, Field(ge=0, le=256)] = Field(
         default=0,
-        description="Gaps of up to so many pixels across are closed: holes get the depth of their "
-        "farther rim, are lit, and are counted; for shadows, a surface goes on behind narrow things "
-        "that stand before it. 0: holes stay holes, and light passes where nothing was measured.",
+        description="Gaps of up to so many pixels across are closed: holes get the depth of "
+        "their farther rim, are lit, and are counted; for shadows, a surface goes on behind narrow "
+        "things before it. 0: holes stay holes, and light passes where nothing was measured.",
     )
 
     @model_validator(mode="after")

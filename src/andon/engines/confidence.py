@@ -23,8 +23,11 @@ Float = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-def confidence_of_frame(frame: Frame, /) -> Confidence:
+def confidence_of_frame(frame: Frame, /, sigma: Float | None = None) -> Confidence:
     """How far each pixel of a frame that was drawn may be trusted.
+
+    `sigma` (H, W, 3) is the standard deviation of what was captured, as an encoded value; default:
+    as noisy as the photograph looks (`noise_codes`), and at least its steps.
 
     Light that glow and glare spread over a pixel is taken for certain. Codes are those of the
     camera's own display: of the tone ``fusion`` as without a tone, and of an optical see-through
@@ -48,7 +51,8 @@ def confidence_of_frame(frame: Frame, /) -> Confidence:
     def shown(light: Float) -> Float:
         return shown_codes((light + spread) * white, tone, captured.response, white)
 
-    return confidence_of(captured, relit, shown, _causes(frame, lux), noise_codes(captured))
+    sigma = noise_codes(captured) if sigma is None else sigma
+    return confidence_of(captured, relit, shown, _causes(frame, lux), sigma)
 
 
 def _causes(frame: Frame, lux: Float) -> dict[Cause, Mask]:

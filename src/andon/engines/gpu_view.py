@@ -50,9 +50,7 @@ class GpuView:
         view = frame.view
         start = engine.start
         shells = None if prepared.shells is None else prepared.shells.views[view.name]
-        self.surface = SurfaceStage(
-            gpu, prepared.surface, view, start.bodies, start.movers, shells
-        )
+        self.surface = SurfaceStage(gpu, prepared.surface, view, start.bodies, start.movers, shells)
         seen = self.surface.surface
         self.composite = composite.CompositeStage(
             gpu,

@@ -144,7 +144,9 @@ class Shell(Table):
             raise refusal("exactly one of radius_m, mesh, drum is allowed")
         if self.margin_m is not None and not self.real:
             raise refusal(
-                "belongs to real shells", key="margin_m", remedy="state real = true, or leave it out"
+                "belongs to real shells",
+                key="margin_m",
+                remedy="state real = true, or leave it out",
             )
         if self.absorptance + max(self.transmittance) > 1 + 1e-9:
             raise refusal("absorptance + transmittance must be ≤ 1", key="absorptance")

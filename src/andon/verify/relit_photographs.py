@@ -31,7 +31,15 @@ from andon.files.pictures.write import write_exr, write_png
 from andon.verify.photometric_stereo import photometric_stereo
 from andon.verify.registry import NotShown
 
-__all__ = ["FOLDER", "OBJECTS", "Known", "Photographs", "known_without", "photographs", "write_pair"]
+__all__ = [
+    "FOLDER",
+    "OBJECTS",
+    "Known",
+    "Photographs",
+    "known_without",
+    "photographs",
+    "write_pair",
+]
 
 Float = NDArray[np.float64]
 Bytes = NDArray[np.uint8]

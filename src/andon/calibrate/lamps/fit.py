@@ -249,7 +249,10 @@ class _Fit:
         wanted, response = self.target.linear, self.frame.response
         looked = self.target.seen if self.mask is None else self.target.seen & self.mask
         pair = photograph[looked], wanted[looked]
-        gains = {"gain_one": best_gain(*pair, response), "gain_channels": best_gains(*pair, response)}
+        gains = {
+            "gain_one": best_gain(*pair, response),
+            "gain_channels": best_gains(*pair, response),
+        }
         regions = {"whole": self.target.seen}
         if self.mask is not None:
             regions = {"inside": looked, "outside": self.target.seen & ~self.mask, **regions}
@@ -297,16 +300,14 @@ def _free(terms: tuple[Term, ...], settings: FitSettings) -> Float:
     columns: list[Float] = []
     for index, term in enumerate(terms):
         apart = settings.dimming == "channels" if term.kind == "dimming" else settings.colour
-        for channels in ([[0], [1], [2]] if apart else [[0, 1, 2]]):
+        for channels in [[0], [1], [2]] if apart else [[0, 1, 2]]:
             column = np.zeros((len(terms), 3))
             column[index, channels] = 1
             columns.append(column)
     return np.stack(columns, axis=-1)
 
 
-def _terms(
-    chosen: tuple[str, ...], settings: FitSettings, prepared: Prepared
-) -> tuple[Term, ...]:
+def _terms(chosen: tuple[str, ...], settings: FitSettings, prepared: Prepared) -> tuple[Term, ...]:
     terms = [Term("lamp", name) for name in chosen]
     if settings.dimming != "off":
         if not all(prepared.ambient.dimming) or prepared.ambient.dimming_mode != "linear":

@@ -148,9 +148,7 @@ def _groups(problem: Problem) -> NDArray[np.intp]:
     return np.searchsorted(edges, reach)
 
 
-def _robust(
-    off: Float, groups: NDArray[np.intp], problem: Problem, /, *, tukey: bool
-) -> Float:
+def _robust(off: Float, groups: NDArray[np.intp], problem: Problem, /, *, tukey: bool) -> Float:
     """(n, 3) factors 0…1 of the weights, by errors `off` in units of the noise."""
     numbers = (problem.counts > 0) & ~problem.is_white[:, None]
     scale = np.ones(GROUPS)
@@ -185,9 +183,7 @@ def _least_squares(problem: Problem, weights: Float) -> Float:
     return problem.free @ found
 
 
-def _told(
-    problem: Problem, weights: Float, off: Float
-) -> tuple[Float, NDArray[np.bool_]]:
+def _told(problem: Problem, weights: Float, off: Float) -> tuple[Float, NDArray[np.bool_]]:
     """Standard errors (J, 3), and which terms are told apart from all others (J,)."""
     gram, _ = _normal(problem, weights)
     own = np.sqrt(np.diag(gram))

@@ -62,9 +62,7 @@ def prepared_with(prepared: Prepared, terms: Sequence[Term], amounts: Float, /) 
         for term, amount in zip(terms, amounts, strict=True)
         if term.kind == "lamp"
     }
-    lux = {
-        term.kind: term.unit * amount for term, amount in zip(terms, amounts, strict=True)
-    }
+    lux = {term.kind: term.unit * amount for term, amount in zip(terms, amounts, strict=True)}
     dimming = lux.get("dimming", np.ones(3))
     fill = lux.get("sky", np.zeros(3)), lux.get("ground", np.zeros(3))
     own = tuple(float(share) for share in dimming * np.asarray(prepared.ambient.dimming))

@@ -90,3 +90,22 @@ def test_every_display_has_it(tmp_path, display):
     assert np.nanmedian(found.expected_error_codes) == pytest.approx(
         np.nanmedian(plain.expected_error_codes), rel=0.1
     )
+
+
+def test_beyond_a_measured_curve_nothing_is_known(engine):
+    """Curves to 400 lx; the lamp takes a strip of the wall beyond them."""
+    from andon import PointLamp, SurfaceCurve, View, relight
+
+    view = View("pinhole", 64, 48, 57.6, 57.6, 31.5, 23.5)
+    lux = np.linspace(0, 400, 9)
+    curve = SurfaceCurve(lux, (0.001 * lux[:, None]) ** 0.9 * np.ones(3))
+    photo = np.full((48, 64, 3), 90, np.uint8)
+    lamp = PointLamp("bulb", np.array([-0.8, 0.0, -1.7]), np.full(3, 60.0))
+    frame = relight(
+        photo, view, [lamp], depth_m=np.full(view.shape, 2.0), ambient_lux=100.0, engine=engine,
+        curves=[(curve, np.ones(view.shape, bool))],
+    )  # fmt: skip
+    new = np.asarray(frame.luminance.cd_m2) / frame.captured.luminance_per_unit
+    over = (new > curve.linear[-1]).any(axis=-1)
+    assert 0.02 < over.mean() < 0.5
+    assert ((frame.confidence.cause == Cause.BEYOND) == over).mean() > 0.999

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import typer
 
+from andon.cli import calibrate_response, calibrate_surface
+
 __all__ = ["calibrate_app"]
 
 calibrate_app = typer.Typer(no_args_is_help=True)
@@ -15,3 +17,5 @@ def _calibrate() -> None:
 
 
 # In the order of ``andon calibrate --help``.
+calibrate_app.command("response")(calibrate_response.response)
+calibrate_app.command("surface")(calibrate_surface.surface)

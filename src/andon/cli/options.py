@@ -120,6 +120,63 @@ class RelightOptions:
         float | None,
         typer.Option(help="Screen value (0…1, linear) per cd/m²; default: the photograph's own."),
     ] = None
+    fit_to: Annotated[
+        Path | None,
+        typer.Option(
+            help="Reference photograph of the same view in the lamps' light: their flux and colour "
+            "are fitted to it, and the picture is drawn with them.",
+        ),
+    ] = None
+    fit_mask: Annotated[
+        Path | None,
+        typer.Option(help="White where the fit may look; errors are given inside and outside."),
+    ] = None
+    fit_lamps: Annotated[
+        list[str] | None,
+        typer.Option(help="Names of the lamps to fit, a,b; may be repeated. Default: all."),
+    ] = None
+    fit_dimming: Annotated[
+        str,
+        typer.Option(
+            metavar="off|one|channels",
+            help="What is left of E0 is fitted too: one factor (also another exposure of the "
+            "reference), or three (white balance).",
+        ),
+    ] = "off"
+    fit_colour: Annotated[
+        bool, typer.Option(help="Each lamp's three channels are free; else its flux alone.")
+    ] = True
+    fit_bounce: Annotated[
+        bool,
+        typer.Option(
+            "--fit-bounce",
+            help="A hemisphere of light is fitted too, for what surfaces reflect of the lamps.",
+        ),
+    ] = False
+    fit_response: Annotated[
+        bool,
+        typer.Option(
+            "--fit-response",
+            help="The camera's response is chosen (srgb, linear, gamma) by the error it leaves.",
+        ),
+    ] = False
+    fit_align: Annotated[
+        str,
+        typer.Option(
+            metavar="auto|none", help="Of a camera that moved a little before the reference."
+        ),
+    ] = "auto"
+    fit_report: Annotated[
+        Path | None, typer.Option(help="JSON: fitted values, their errors, error of the picture.")
+    ] = None
+    fit_figure: Annotated[
+        Path | None,
+        typer.Option(help="PNG: photograph, reference, prediction and its error, side by side."),
+    ] = None
+    fit_scene: Annotated[
+        Path | None,
+        typer.Option(help="TOML: the scene with the fitted lamps, in the folder of its files."),
+    ] = None
     view: Annotated[str | None, typer.Option(help="left or right of a stereo rig.")] = None
     time_seconds: Annotated[
         float, typer.Option("--time", help="Moment of the session, seconds.")

@@ -10,6 +10,7 @@ import numpy as np
 from andon.cli.confidence import check_confidence, notes_on_confidence, write_confidence
 from andon.cli.console import check_writable, note, print_report
 from andon.cli.options import RelightOptions
+from andon.cli.relight_fit import check_fit, fit_inputs, fit_outputs, fitted, print_fit, write_fit
 from andon.cli.seen import check_seen, notes_on_seen, write_seen
 from andon.cli.typed import ASSUMED_AMBIENT_LUX, named_as_typed, scene_of
 from andon.cli.uncovered import check_uncovered, write_uncovered
@@ -27,6 +28,7 @@ def run(options: RelightOptions) -> None:
     check_writable(options.out, (*PICTURES, ".exr"), "--out")
     for path in options.illuminance_maps or ():
         check_writable(path, (".exr", ".png"), "--illuminance-map")
+    check_fit(options)
     _refuse_overwriting(options)
     from andon.cli.notes import depth_text, notes_on, notes_on_time
     from andon.pipeline import Renderer
@@ -39,6 +41,8 @@ def run(options: RelightOptions) -> None:
     for path in _outputs(options):
         refuse_photograph(path, scene)
     with named_as_typed(options, len(scene.lamp) - len(options.lamps or ()), scene.file):
+        fit = None if options.fit_to is None else fitted(options, scene)
+        scene = scene if fit is None or fit.scene is None else fit.scene
         renderer = Renderer(scene, options.engine)  # type: ignore[arg-type]
         frame = renderer.render(options.time_seconds, options.view)
     if options.scene is None and options.ambient_lux is None:
@@ -53,6 +57,8 @@ def run(options: RelightOptions) -> None:
         write_illuminance(path, frame.illuminance, frame.surface.valid)
     if options.uncovered is not None and frame.baked is not None:
         write_uncovered(options.uncovered, frame.image.rgb, frame.baked)
+    if fit is not None:
+        write_fit(options, fit)
     about_trust: list[str] = []
     if options.confidence is not None:
         write_confidence(options.confidence, frame.confidence)
@@ -68,19 +74,22 @@ def run(options: RelightOptions) -> None:
     print_report(
         frame.report, renderer.setup_seconds, frame.surface.valid.size, depth=depth, white=white
     )
+    if fit is not None:
+        print_fit(fit)
     print(options.out)
 
 
 def _outputs(options: RelightOptions) -> list[Path]:
     more = (options.seen, options.uncovered, options.confidence)
     named = [path for path in more if path is not None]
-    return [options.out, *(options.illuminance_maps or ()), *named]
+    return [options.out, *(options.illuminance_maps or ()), *named, *fit_outputs(options)]
 
 
 def _refuse_overwriting(options: RelightOptions) -> None:
     """An output must be no input, and no other output."""
     named = (options.photo, options.depth, options.camera, options.mesh, options.scene)
-    taken = {path.resolve() for path in (*named, *(options.objects or ())) if path is not None}
+    more = (*named, *(options.objects or ()), *fit_inputs(options))
+    taken = {path.resolve() for path in more if path is not None}
     for path in _outputs(options):
         if path.resolve() in taken:
             raise InputError(

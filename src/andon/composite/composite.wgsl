@@ -10,7 +10,7 @@ fn relit_linear(captured: vec3f, added_lux: vec3f, ambient: AmbientRecord) -> ve
   return captured * max(ambient.dimming + added_lux * ambient.inverse_lux, vec3f(0.0));
 }
 
-// Where E0 is a picture, or dimming is the paper's: both are folded into two pictures,
+// Where E0 or ρ is a picture, or dimming is the paper's: both are folded into two pictures,
 // what is left of the captured light and what one lux adds to it.
 fn relit_by_maps(dimmed: vec3f, per_lux: vec3f, added_lux: vec3f) -> vec3f {
   return max(dimmed + per_lux * added_lux, vec3f(0.0));

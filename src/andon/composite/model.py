@@ -9,7 +9,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Ambient"]
+from andon.responses import SurfaceCurve
+
+__all__ = ["Ambient", "MeasuredSurface"]
 
 
 @dataclass(frozen=True)
@@ -46,3 +48,20 @@ class Ambient:
     def standing_lux(self) -> NDArray[np.float64]:
         """(3,) what is left of `mean_lux` after dimming."""
         return np.asarray(self.dimming) * self.mean_lux
+
+
+@dataclass(frozen=True)
+class MeasuredSurface:
+    """What is known of the real surface in one view, beside its photograph.
+
+    Attributes
+    ----------
+    reflectance : (H, W, 3) ρ ≥ 0, linear Rec.709, in the scale that the photograph shows it in
+        (`map_scale`): π·luminance_per_unit·captured/E0; None where only the photograph tells it.
+    curves : f of each surface that has one.
+    curve_of : (H, W) int16, which of `curves` a pixel has, −1: none; None without curves.
+    """
+
+    reflectance: NDArray[np.float64] | None = None
+    curves: tuple[SurfaceCurve, ...] = ()
+    curve_of: NDArray[np.int16] | None = None

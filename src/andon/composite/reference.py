@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.composite.model import Ambient
+from andon.composite.curves import dimmed_light, linear_of
+from andon.composite.model import Ambient, MeasuredSurface
+from andon.composite.per_lux import per_lux
 from andon.lamps import Lamp, PointLamp, SphereLamp, intensity_cd
 from andon.quantities import CameraFrame, Surface
 
@@ -28,22 +30,31 @@ __all__ = [
 Float = NDArray[np.float64]
 
 
-def relit_linear(frame: CameraFrame, ambient: Ambient, added_lux: Float, /) -> Float:
+def relit_linear(
+    frame: CameraFrame,
+    ambient: Ambient,
+    added_lux: Float,
+    /,
+    measured: MeasuredSurface | None = None,
+) -> Float:
     """Linear camera values (H, W, 3) under the new light: captured × (dimming·E0 + ΔE)/E0.
 
-    Where light is taken away ΔE is negative; no light at all is the least that is left.
+    Where `measured` has a curve f that is f(f⁻¹(captured) × (dimming·E0 + ΔE)/E0). Where light is
+    taken away ΔE is negative; no light at all is the least that is left.
     """
-    captured = np.asarray(frame.linear, np.float64)
-    dimming, e0 = np.asarray(ambient.dimming), ambient.lux_of(frame.view.name)
-    if ambient.dimming_mode == "linear":
-        return captured * np.maximum(dimming + added_lux / e0, 0)
-    dimmed = frame.response.decode(dimming * frame.response.encode(captured))
-    return np.maximum(dimmed + captured * (added_lux / e0), 0)
+    if measured is None and ambient.dimming_mode == "linear":
+        captured, e0 = np.asarray(frame.linear, np.float64), ambient.lux_of(frame.view.name)
+        return captured * np.maximum(np.asarray(ambient.dimming) + added_lux / e0, 0)
+    dimmed = dimmed_light(frame, ambient, measured)
+    light = dimmed + per_lux(frame, ambient, measured) * added_lux
+    return linear_of(np.maximum(light, np.minimum(dimmed, 0)), measured)
 
 
-def unlit_linear(frame: CameraFrame, ambient: Ambient, /) -> Float:
+def unlit_linear(
+    frame: CameraFrame, ambient: Ambient, /, measured: MeasuredSurface | None = None
+) -> Float:
     """Linear camera values (H, W, 3) in what dimming leaves of E0, without any lamp."""
-    return relit_linear(frame, ambient, np.zeros(3))
+    return relit_linear(frame, ambient, np.zeros(3), measured)
 
 
 def object_luminance(
@@ -79,13 +90,14 @@ def compose(
     /,
     standing_lux: Float | None = None,
     mirror: Callable[[Float], Float] | None = None,
+    measured: MeasuredSurface | None = None,
 ) -> Float:
     """Luminance (H, W, 3) in cd/m² of the whole picture.
 
     `added_lux` (H, W, 3) is ΔE, 0 in holes; `standing_lux` as in `object_luminance`; `mirror` adds
-    what virtual objects mirror to the picture of diffuse light.
+    what virtual objects mirror to the picture of diffuse light; `measured` is of the real surface.
     """
-    real = frame.luminance_per_unit * relit_linear(frame, ambient, added_lux)
+    real = frame.luminance_per_unit * relit_linear(frame, ambient, added_lux, measured)
     virtual = object_luminance(surface, ambient, added_lux, standing_lux)
     luminance = np.where(surface.is_object[..., None], virtual, real)
     if surface.shell_cd_m2 is not None:

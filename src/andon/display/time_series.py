@@ -1,4 +1,4 @@
-"""Curves, one panel below the other, and bars: over time, or on logarithmic axes."""
+"""Curves, points and bars, one panel below the other: over time, or on logarithmic axes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from andon.display.dashes import dash_mask
 
-__all__ = ["COLOURS", "Bars", "Curve", "Panel", "Spans", "drawn", "tick_values"]
+__all__ = ["COLOURS", "Bars", "Curve", "Panel", "Points", "Spans", "drawn", "tick_values"]
 
 Float = NDArray[np.float64]
 Rgb = NDArray[np.uint8]
@@ -62,6 +62,17 @@ class Bars:
     shares: Float
 
 
+@dataclass(frozen=True, eq=False)
+class Points:
+    """(n,) points as discs, drawn in their order and below the curves; NaN is none."""
+
+    name: str
+    colour: Colour
+    x: Float
+    y: Float
+    width_px: float = 2.0
+
+
 @dataclass(frozen=True)
 class Panel:
     """One diagram; `x_range` and `y_range` are its ends, what lies outside is cut off there.
@@ -78,6 +89,7 @@ class Panel:
     curves: Sequence[Curve] = ()
     bars: Sequence[Bars] = ()
     spans: Sequence[Spans] = ()
+    points: Sequence[Points] = ()
     logarithmic: Literal["", "x", "y", "xy"] = ""
     legend: Literal["above", "inside", "none"] = "above"
     height_px: int = PANEL_PX
@@ -161,9 +173,18 @@ class _Sheet:
         for bars in self.panel.bars:
             x, y = np.repeat(bars.edges, 2), np.concatenate([[0], np.repeat(bars.shares, 2), [0]])
             self._line(self.across(x), self.down(y), bars.colour, 2.0)
+        for points in self.panel.points:
+            known = np.isfinite(points.x) & np.isfinite(points.y)
+            places = self.across(points.x[known]), self.down(points.y[known])
+            self._discs(*places, points.colour, points.width_px)
         for curve in self.panel.curves:
             self._curve(curve)
         self._legend()
+
+    def _discs(self, x: Float, y: Float, colour: Colour, width_px: float) -> None:
+        reach = width_px / 2 * OVERSAMPLING
+        for a, b in zip(x.tolist(), y.tolist(), strict=True):
+            self.pen.ellipse([a - reach, b - reach, a + reach, b + reach], fill=colour)
 
     def _shade(self, spans: Spans) -> None:
         top, bottom = self.top * OVERSAMPLING, self.bottom * OVERSAMPLING
@@ -217,7 +238,8 @@ class _Sheet:
             self.pen.line(places, colour, round(width_px * OVERSAMPLING), joint="curve")
 
     def _legend(self) -> None:
-        entries = [*self.panel.curves, *self.panel.bars, *self.panel.spans]
+        panel = self.panel
+        entries = [*panel.curves, *panel.points, *panel.bars, *panel.spans]
         entries = [entry for entry in entries if entry.name]
         s = OVERSAMPLING
         if self.panel.legend == "none":
@@ -238,10 +260,16 @@ class _Sheet:
             self._swatch(entry, x, x + 18 * s, y)
             x -= 16 * s
 
-    def _swatch(self, entry: Curve | Bars | Spans, first: float, last: float, y: float) -> None:
+    def _swatch(
+        self, entry: Curve | Points | Bars | Spans, first: float, last: float, y: float
+    ) -> None:
         if isinstance(entry, Spans):
             reach = 5 * OVERSAMPLING
             self.pen.rectangle([first, y - reach, last, y + reach], fill=entry.colour)
+            return
+        if isinstance(entry, Points):
+            middle, width_px = np.array([(first + last) / 2]), max(entry.width_px, 6.0)
+            self._discs(middle, np.array([y]), entry.colour, width_px)
             return
         # Pieces short enough for dashes to show.
         x = np.linspace(first, last, 19)

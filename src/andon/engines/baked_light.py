@@ -17,7 +17,7 @@ from shlex import quote
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.composite.model import Ambient
+from andon.composite.model import Ambient, MeasuredSurface
 from andon.engines.digest import digest
 from andon.engines.probes import SceneProbes, lampless_pixels, lit_pixels
 from andon.errors import InputError
@@ -123,15 +123,17 @@ def baked_of(
     lamps: Sequence[Lamp],
     frames: Mapping[str, CameraFrame],
     ambient: Ambient,
+    measured: Mapping[str, MeasuredSurface],
     /,
     *,
     has_probes: bool,
 ) -> tuple[SceneBaked | None, tuple[str, ...]]:
     """The maps that [baked] names, or None; and what is to be said of them.
 
-    `lamps` are all of the scene, at its start; `frames` and `ambient` those of `Prepared`;
-    `has_probes`: objects may be lit by probes. Raises `InputError` where there are none yet, where
-    one lacks a lamp of the scene, and where they hold other light than the scene asks for.
+    `lamps` are all of the scene, at its start; `frames`, `ambient` and `measured` those of
+    `Prepared`; `has_probes`: objects may be lit by probes. Raises `InputError` where there are none
+    yet, where one lacks a lamp of the scene, and where they hold other light than the scene asks
+    for.
     """
     table = scene.baked
     if table is None or not table.lamps:
@@ -156,7 +158,15 @@ def baked_of(
         photometry=scene.photometry,
     )
     in_probes = has_probes and any(lamp.in_probes for lamp in scene.lamp if lamp.name in parts)
-    now = map_facts(scene, surface, lamps, moments=manifest.moments, frames=frames, ambient=ambient)
+    now = map_facts(
+        scene,
+        surface,
+        lamps,
+        moments=manifest.moments,
+        frames=frames,
+        ambient=ambient,
+        measured=measured,
+    )
     return SceneBaked(light, in_probes), _changes(scene, manifest, now)
 
 
@@ -228,6 +238,7 @@ def map_facts(
     moments: Sequence[float] = (0.0,),
     frames: Mapping[str, CameraFrame] | None = None,
     ambient: Ambient | None = None,
+    measured: Mapping[str, MeasuredSurface] | None = None,
 ) -> dict[str, str]:
     """What illuminance maps depend on, as texts; how a shadow map is drawn does not count.
 
@@ -242,7 +253,8 @@ def map_facts(
     ----------
     lamps : all of the steady scene, at its start.
     moments : of the maps.
-    frames, ambient : the photograph and the light that it was taken in.
+    frames, ambient, measured : the photograph, the light that it was taken in, and what else is
+        known of its surface.
     """
     parts = [part for part in (surface.real, surface.objects) if len(part.triangles)]
     times = _some(moments)
@@ -254,7 +266,7 @@ def map_facts(
     if later:
         facts["movement"] = movement[:DIGITS]
     if frames and ambient is not None and _is_photographed(surface):
-        facts["reflectance"] = _reflectance(frames, ambient)
+        facts["reflectance"] = _reflectance(frames, ambient, measured or {})
     every = [*lamps, *_lamps_later(scene, times[1:])]
     for table in scene.lamp:
         if table.transport != "direct":
@@ -274,8 +286,13 @@ def _is_photographed(surface: SurfaceModel) -> bool:
     return len(surface.real.triangles) > 0 and not states_reflectance(surface.real)
 
 
-def _reflectance(frames: Mapping[str, CameraFrame], ambient: Ambient) -> str:
+def _reflectance(
+    frames: Mapping[str, CameraFrame],
+    ambient: Ambient,
+    measured: Mapping[str, MeasuredSurface],
+) -> str:
     """The name of what the photograph shows of surfaces; E0 and exposure may go up together."""
+    known = [part.reflectance for part in measured.values() if part.reflectance is not None]
     shown = [
         [
             name,
@@ -284,7 +301,7 @@ def _reflectance(frames: Mapping[str, CameraFrame], ambient: Ambient) -> str:
         ]
         for name, frame in frames.items()
     ]
-    return digest(shown, single=True)[:DIGITS]
+    return digest(shown, *known, single=True)[:DIGITS]
 
 
 def _lamps_later(scene: Scene, times: Sequence[float]) -> list[Lamp]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from andon.capture.noise import noise_codes
 from andon.composite.confidence import Cause, Confidence, confidence_of
+from andon.composite.curves import beyond_curves
 from andon.composite.reference import relit_linear
 from andon.display.reference import shown_codes
 from andon.errors import InputError
@@ -38,13 +39,15 @@ def confidence_of_frame(frame: Frame, /, sigma: Float | None = None) -> Confiden
         raise InputError("is missing: only what was drawn has it", field="frame.prepared")
     lux = np.asarray(frame.illuminance.lux, np.float64)
     linear = np.asarray(captured.linear, np.float64)
+    measured = prepared.measured.get(captured.view.name)
 
     def relit(light: Float) -> Float:
         changed: Any = light  # float64, so that steps of 16 bits are not lost
-        return relit_linear(replace(captured, linear=changed), prepared.ambient, lux)
+        return relit_linear(replace(captured, linear=changed), prepared.ambient, lux, measured)
 
     white = captured.luminance_per_unit
-    spread = np.asarray(frame.luminance.cd_m2, np.float64) / white - relit(linear)
+    new = relit(linear)
+    spread = np.asarray(frame.luminance.cd_m2, np.float64) / white - new
     exposure = prepared.exposure
     tone = replace(exposure, tone="none") if exposure.tone == "fusion" else exposure
 
@@ -52,7 +55,11 @@ def confidence_of_frame(frame: Frame, /, sigma: Float | None = None) -> Confiden
         return shown_codes((light + spread) * white, tone, captured.response, white)
 
     sigma = noise_codes(captured) if sigma is None else sigma
-    return confidence_of(captured, relit, shown, _causes(frame, lux), sigma)
+    causes = _causes(frame, lux)
+    beyond = beyond_curves(linear, new, measured)
+    if beyond is not None:  # what was not changed needs no curve
+        causes[Cause.BEYOND] = beyond & ~np.isclose(new, linear, rtol=1e-6, atol=0).all(axis=-1)
+    return confidence_of(captured, relit, shown, causes, sigma)
 
 
 def _causes(frame: Frame, lux: Float) -> dict[Cause, Mask]:

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.composite.per_lux import shown_reflectance
 from andon.engines.baked import lamps_in_probes
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
@@ -225,6 +226,6 @@ def _light(frame: CameraFrame, prepared: Prepared) -> NDArray[np.float32]:
         dimmed = dimming * linear
     else:
         dimmed = frame.response.decode(dimming * frame.response.encode(linear))
-    reflectance = np.pi * frame.luminance_per_unit * linear / ambient.lux_of(frame.view.name)
+    reflectance = shown_reflectance(frame, ambient, prepared.measured.get(frame.view.name))
     light = np.concatenate([frame.luminance_per_unit * dimmed, reflectance], axis=-1)
     return np.maximum(light, 0).astype(np.float32)

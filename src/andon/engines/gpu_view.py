@@ -60,6 +60,7 @@ class GpuView:
             seen.view_buffer,
             seen.emitted_cd_m2,
             engine.taking,
+            prepared.measured.get(view.name),
         )
         self.composite.load(frame)
         self.luminance = make_texture(gpu, "rgba16float", view.width, view.height, label="light")
@@ -107,7 +108,8 @@ class GpuView:
         frame = self.frame
         self.glare: GlareView | None = None
         shown, through = self.luminance, prepared.exposure.see_through
-        unlit = None if through is None else unlit_linear(frame, prepared.ambient)
+        measured = prepared.measured.get(frame.view.name)
+        unlit = None if through is None else unlit_linear(frame, prepared.ambient, measured)
         if prepared.glare is not None:
             real = None if through is None or unlit is None else ost.real_light(unlit, through)
             hiding = prepared.surface.shadow_casters
@@ -144,6 +146,8 @@ class GpuView:
         return bool(self._moved.since_last([*moment.movers, *bodies]))
 
     def _entry_point(self, prepared: Prepared) -> str:
+        if self.composite.has_curves:
+            return "relit_with_curves"
         if self.composite.has_maps:
             return "relit_with_maps"
         has_objects = prepared.surface.has_objects or self.surface.has_bodies

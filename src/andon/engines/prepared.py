@@ -9,7 +9,7 @@ import numpy as np
 
 from andon.capture.dither import dithered
 from andon.capture.still import frame_from_picture
-from andon.composite.model import Ambient
+from andon.composite.model import Ambient, MeasuredSurface
 from andon.display.model import Exposure
 from andon.engines.ambient_light import ambient_of
 from andon.engines.baked_light import SceneBaked, baked_of, check_counted_once, undirected
@@ -17,6 +17,7 @@ from andon.engines.checks import check_lamps
 from andon.engines.glare import SceneGlare, glare_of, with_clipped_light
 from andon.engines.glass import SceneGlass, glass_of
 from andon.engines.highlights import SceneHighlights, highlights_of
+from andon.engines.measured import measured_of, refuse_without_photograph
 from andon.engines.moment import Moment
 from andon.engines.photographless import (
     ambient_without_photograph,
@@ -24,7 +25,6 @@ from andon.engines.photographless import (
     white_cd_m2,
 )
 from andon.engines.probes import SceneProbes, changed_since_bake, probes_of
-from andon.engines.real_shells import RealShells, real_shells
 from andon.engines.reading import (
     exposure_of,
     glow_of,
@@ -34,6 +34,7 @@ from andon.engines.reading import (
     source_of,
     view_of,
 )
+from andon.engines.real_shells import RealShells, real_shells
 from andon.errors import InputError
 from andon.glow.model import Glow
 from andon.lamps import Body, Lamp, resolve_bodies, resolve_lamps
@@ -52,7 +53,6 @@ __all__ = ["Prepared", "prepare"]
 LATER_TABLES: tuple[str, ...] = ()
 
 LATER_KEYS = {
-    "surface": ("response", "reflectance_map"),
     "capture": ("depth", "pose", "noise"),
 }
 
@@ -95,6 +95,7 @@ class Prepared:
     highlights : how virtual objects mirror, or None: nothing does.
     baked : illuminance maps, or None: there are none, or nobody asks for them.
     undirected : lamps of the scene whose direct light is not computed, since it is in the maps.
+    measured : view name → what is measured of the real surface there; without a view: nothing.
     shells : those of the bodies that stand in the photograph, or None.
     undithered : view name → what was captured, where `frames` are dithered.
     """
@@ -116,6 +117,7 @@ class Prepared:
     highlights: SceneHighlights | None = None
     baked: SceneBaked | None = None
     undirected: frozenset[str] = frozenset()
+    measured: Mapping[str, MeasuredSurface] = field(default_factory=dict[str, MeasuredSurface])
     shells: RealShells | None = None
     undithered: Mapping[str, CameraFrame] = field(default_factory=dict[str, CameraFrame])
 
@@ -163,14 +165,14 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
     scene = scene if drawn else scene.steady()
     probes, notes = probes_of(scene) if drawn else (None, ())
     seen = _photographed if scene.has_photograph else _all_virtual
-    frames, ambient, surface = seen(scene, probes, drawn)
+    frames, ambient, surface, measured = seen(scene, probes, drawn)
     virtual = _virtual_groups(scene, surface)
     lamps = (*resolve_lamps(scene.steady(), 0.0), *resolve_sources(scene, 0.0, virtual))
     if frames:
         eye = next(iter(frames.values())).view.position
         check_lamps(scene, lamps, surface, eye)
     baked, about_maps = (
-        baked_of(scene, surface, lamps, frames, ambient, has_probes=probes is not None)
+        baked_of(scene, surface, lamps, frames, ambient, measured, has_probes=probes is not None)
         if drawn
         else (None, ())
     )
@@ -198,6 +200,7 @@ def prepare(scene: Scene, /, *, drawn: bool = True) -> Prepared:
         highlights=highlights_of(scene, surface),
         baked=baked,
         undirected=undirected(scene),
+        measured=measured,
         shells=shells,
         undithered=frames if scene.display.dither else {},
     )
@@ -214,15 +217,16 @@ def _lamps_of(
     return lamps
 
 
-_Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel]
+_Seen = tuple[dict[str, CameraFrame], Ambient, SurfaceModel, dict[str, MeasuredSurface]]
 
 
 def _all_virtual(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen:
     """Frames, light and surface of a scene without a photograph."""
+    refuse_without_photograph(scene)
     ambient = ambient_without_photograph(scene)
     lamps = resolve_lamps(scene.steady(), 0.0)
     frames = sky_frames(scene, lamps, white_cd_m2(scene, ambient, lamps)) if drawn else {}
-    return frames, ambient, virtual_surface(scene)
+    return frames, ambient, virtual_surface(scene), {}
 
 
 def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _Seen:
@@ -250,7 +254,9 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
         for name, picture in pictures.items()
     }
     frames = {name: with_clipped_light(scene, frame) for name, frame in frames.items()}
-    return frames, ambient, replace(surface, notes=(*surface.notes, *notes))
+    measured, on_maps = measured_of(scene, views, frames, ambient, surface)
+    surface = replace(surface, notes=(*surface.notes, *notes, *on_maps))
+    return frames, ambient, surface, measured
 
 
 def _with_noise(

@@ -130,8 +130,9 @@ class ReferenceEngine:
         mirror = None
         if self._mirrored is not None:
             mirror = partial(self._mirrored.over, seen.emitted_cd_m2)
+        measured = self.prepared.measured.get(frame.view.name)
         luminance = composite.compose(
-            frame, seen, self.prepared.ambient, added, moment.lamps, standing, mirror
+            frame, seen, self.prepared.ambient, added, moment.lamps, standing, mirror, measured
         )
         return Luminance(luminance, self.prepared.photometry)
 
@@ -257,13 +258,18 @@ class ReferenceEngine:
         through = self.prepared.exposure.see_through
         if through is not None:
             # Real light glares in the eye by itself.
-            unlit = composite.unlit_linear(frame, self.prepared.ambient)
+            unlit = self._unlit(frame)
             real = frame.luminance_per_unit * ost.real_light(unlit, through)
             light = np.maximum(all_light - real, 0)
         mirrored = None if self._mirrored is None else self._mirrored.lamps_cd_m2
         stays, added = glare_seen(own, light, frame.view, moment.lamps, self._unpictured, mirrored)
         self._glare = Luminance(added, word)
         return Luminance((stays if through is None else all_light) + added, word)
+
+    def _unlit(self, frame: CameraFrame) -> Float:
+        """Linear camera values (H, W, 3) of a view without any lamp."""
+        measured = self.prepared.measured.get(frame.view.name)
+        return composite.unlit_linear(frame, self.prepared.ambient, measured)
 
     def read_glare(self, frame: CameraFrame) -> Luminance | None:
         """What glare added to the view that was drawn last."""
@@ -276,7 +282,7 @@ class ReferenceEngine:
             cd_m2 = np.asarray(luminance.cd_m2, np.float64)
             real, unlit = (
                 white * ost.real_light(light, through)
-                for light in (frame.linear, composite.unlit_linear(frame, self.prepared.ambient))
+                for light in (frame.linear, self._unlit(frame))
             )
             share = ost.shown_share(cd_m2, real, through, white, unlit)
             return DisplayImage(ost.display_codes(share))

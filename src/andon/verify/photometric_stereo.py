@@ -1,9 +1,9 @@
 """Photometric stereo: normals and reflectance from photographs under known distant lights.
 
-A matte surface shows ``v_k = ρ·s_k·max(n·l_k, 0)`` in photograph k, l_k towards its light and s_k the
-light's strength. Where it is lit that is linear in ρn: three photographs give it, more give it by
-least squares. What is not matte or hidden from a light is an outlier, so every photograph of a pixel
-is weighed by how well it agrees with the others.
+A matte surface shows ``v_k = ρ·s_k·max(n·l_k, 0)`` in photograph k, l_k towards its light and s_k
+the light's strength. Where it is lit that is linear in ρn: three photographs give it, more give it
+by least squares. What is not matte, or hidden from a light, is an outlier, so every photograph of a
+pixel is weighed by how well it agrees with the others.
 
 ==================  ===================================  ========================================
 outlier             looks                                and is left out by
@@ -41,8 +41,10 @@ TUNING, SIGMA_PER_MEDIAN = 2.985, 1.4826
 # No less than this, of white: pixels that fit exactly must not throw out all that is not exact.
 LEAST_SIGMA = 1 / 255
 ROUNDS = 8
-# Keeps a pixel without three lights solvable: a thousandth of one well-lit photograph.
-RIDGE = 1e-3
+# Keeps a pixel without three lights solvable; of one photograph's weight.
+RIDGE = 1e-6
+# A pixel that got less than this of one light's power has no reflectance.
+LEAST_POWER = 1e-3
 
 
 @dataclass(frozen=True)
@@ -52,8 +54,8 @@ class Stereo:
     Attributes
     ----------
     normals : (n, 3) unit, in the axes of the directions.
-    reflectance : (n, 3) linear value of a pixel that faces a light of mean strength.
-    strengths : (k,) of the lights, mean 1.
+    reflectance : (n, 3) linear value of a pixel that faces a light of strength 1.
+    strengths : (k,) of the lights, as the photographs show them on these normals.
     weights : (k, n) in [0, 1]: how far a photograph was believed.
     """
 
@@ -68,13 +70,20 @@ class Stereo:
         return self.weights.sum(axis=0) >= 3
 
 
-def photometric_stereo(values: Float, directions: Float, /) -> Stereo:
-    """Fits normals, reflectance and the lights' strengths.
+def photometric_stereo(
+    values: Float, directions: Float, /, *, strengths: Float | None = None
+) -> Stereo:
+    """Fits normals and reflectance; then measures how strong each light was.
+
+    Strengths are not fitted together with normals: that is exact for a matte thing, and takes for
+    a strength what a rough or glazed one does otherwise (in the rows `relight.photograph` it costs
+    3 dB on the sphere and 1 dB on the cat).
 
     Parameters
     ----------
     values : (k, n, 3) linear, 0…1.
     directions : (k, 3) unit, towards the lights.
+    strengths : (k,) > 0 for normals; default: all 1.
 
     Raises
     ------
@@ -86,29 +95,28 @@ def photometric_stereo(values: Float, directions: Float, /) -> Stereo:
             f"must span space, got {len(directions)} lights in a plane or fewer than three",
             field="directions",
         )
+    lights = directions if strengths is None else strengths[:, None] * directions
     grey = values.mean(axis=2)
     bright = grey > np.maximum(LIT_SHARE * grey.max(axis=0), LEAST_LIT)
     usable = bright & (values.max(axis=2) < CLIPPED)
-    weights, strengths = usable.astype(np.float64), np.ones(len(values))
-    scaled = _solved(grey, directions, weights)
+    weights = usable.astype(np.float64)
+    scaled = _solved(grey, lights, weights)
     for _ in range(ROUNDS):
-        shown = np.maximum(directions @ scaled.T, 0)
-        strengths = (weights * shown * grey).sum(axis=1) / (weights * shown**2).sum(axis=1)
-        strengths /= strengths.mean()
+        shown = np.maximum(lights @ scaled.T, 0)
         facing = shown > LIT_SHARE * shown.max(axis=0)
-        weights = _agreement(grey - strengths[:, None] * shown, usable & facing)
-        scaled = _solved(grey, strengths[:, None] * directions, weights)
+        weights = _agreement(grey - shown, usable & facing)
+        scaled = _solved(grey, lights, weights)
     normals = scaled / np.maximum(np.linalg.norm(scaled, axis=1, keepdims=True), 1e-12)
-    lux = strengths[:, None] * np.maximum(directions @ normals.T, 0)
-    return Stereo(normals, _reflectance(values, lux, weights), strengths, weights)
+    reflectance = _reflectance(values, np.maximum(lights @ normals.T, 0), weights)
+    return Stereo(normals, reflectance, _strengths(grey, directions, scaled, usable), weights)
 
 
 def _solved(grey: Float, lights: Float, weights: Float) -> Float:
     """(n, 3) of ρn by weighted least squares of (k, n) values under (k, 3) lights."""
-    moments = np.einsum("ki,kj,kn->nij", lights, lights, weights)
-    moments += RIDGE * np.eye(3)
-    sums = np.einsum("ki,kn,kn->ni", lights, weights, grey)
-    return np.linalg.solve(moments, sums[..., None])[..., 0]
+    squares = (lights[:, :, None] * lights[:, None, :]).reshape(-1, 9)
+    moments = (weights.T @ squares).reshape(-1, 3, 3) + RIDGE * np.eye(3)
+    sums = (weights * grey).T @ lights
+    return np.asarray(np.linalg.solve(moments, sums[..., None]), np.float64)[..., 0]
 
 
 def _agreement(residuals: Float, candidates: NDArray[np.bool_]) -> Float:
@@ -125,13 +133,21 @@ def _nanmedian(values: Float) -> Float:
     ordered = np.sort(values, axis=0)  # NaN last
     count = np.isfinite(values).sum(axis=0)
     low, high = np.maximum(count - 1, 0) // 2, count // 2
-    columns = np.arange(values.shape[1])
-    middle = (ordered[low, columns] + ordered[np.minimum(high, len(values) - 1), columns]) / 2
+    places = np.stack([low, np.minimum(high, len(values) - 1)])
+    middle = np.take_along_axis(ordered, places, axis=0).mean(axis=0)
     return np.where(count > 0, middle, 0.0)
+
+
+def _strengths(grey: Float, directions: Float, scaled: Float, usable: NDArray[np.bool_]) -> Float:
+    """(k,) by least squares over all pixels that a light reaches, highlights or not."""
+    shown = np.where(usable, np.maximum(directions @ scaled.T, 0), 0)
+    return (shown * grey).sum(axis=1) / np.maximum((shown**2).sum(axis=1), LEAST_POWER)
 
 
 def _reflectance(values: Float, lux: Float, weights: Float) -> Float:
     """(n, 3) by least squares of each channel, normals given; 0 where no light was seen."""
     power = np.einsum("kn,kn->n", weights, lux**2)
     sums = np.einsum("kn,kn,knc->nc", weights, lux, values)
-    return np.where(power[:, None] > RIDGE, sums / np.maximum(power, RIDGE)[:, None], 0.0)
+    return np.where(
+        power[:, None] > LEAST_POWER, sums / np.maximum(power, LEAST_POWER)[:, None], 0.0
+    )

@@ -1,9 +1,9 @@
 """Real photographs of one thing under different known lights: from one of them, the others.
 
-``psm_uw`` of ``ANDON_DATA`` (README.md there): twelve photographs each of a matte grey sphere and of
-a glazed cat, camera fixed, one distant light each, linear 8-bit values. For every ordered pair (i, j)
-Andon relights photograph i, as the scene file of a user would: light i, a known source of E0, is
-removed; light j is added; the surface is a picture of normals and one of ρ.
+``psm_uw`` of ``ANDON_DATA`` (README.md there): twelve photographs each of a matte grey sphere and
+of a glazed cat, camera fixed, one distant light each, linear 8-bit values. For every ordered pair
+(i, j) Andon relights photograph i, as the scene file of a user would: light i, a known source of
+E0, is removed; light j is added; the surface is a picture of normals and one of ρ.
 
 ===================  ==============================================================================
 what                 is known from
@@ -65,8 +65,8 @@ class Photographs:
     name : ``sphere`` or ``cat``.
     codes : (k, H, W, 3) linear, 0…255.
     mask : (H, W) where the thing is.
-    directions : (k, 3) unit, towards the lights; x right, y up, z to the camera, which are the world
-        axes of a camera without a pose.
+    directions : (k, 3) unit, towards the lights; x right, y up, z to the camera, which are the
+        world axes of a camera without a pose.
     """
 
     name: str
@@ -142,10 +142,12 @@ def known_without(shots: Photographs, target: int, /) -> Known:
 
 
 def _rest(values: Float, reflectance: Float, away: NDArray[np.bool_]) -> Float:
-    """(3,) light on pixels that face away from their lamp, of a lamp's; half a code at least."""
-    shown = np.where(away[..., None], values, 0).sum(axis=(0, 1))
-    expected = (away.sum(axis=0)[:, None] * reflectance).sum(axis=0)
-    return np.maximum(shown / np.maximum(expected, 1e-9), 0.5 / 255)
+    """(3,) light on pixels that face away from their lamp, of a lamp's; half a code at least.
+
+    The median: at rims, where normals are worst, many pixels are lit that should not be.
+    """
+    seen = values / np.maximum(reflectance, 1 / 255)
+    return np.maximum(np.median(seen[away], axis=0) if away.any() else 0.0, 0.5 / 255)
 
 
 def write_pair(
@@ -156,6 +158,7 @@ def write_pair(
     Pictures that are there already are kept: all pairs of one target share them. Without `with_map`
     nothing but the photograph tells what the surface reflects.
     """
+    folder.mkdir(parents=True, exist_ok=True)
     target = known.target
     photo, normals = f"{shots.name}.{source}.png", f"normals-{target}.exr"
     reflectance = f"reflectance-{target}.exr"
@@ -188,6 +191,7 @@ def _numbers(values: Sequence[float] | Float) -> str:
 
 # A distant light needs no camera but its axes: any angle of view gives the same picture.
 _SCENE = """\
+[scene]
 photometry = "relative"
 
 [rig.camera]

@@ -35,7 +35,17 @@ from andon.verify.relit_photographs import (
     write_pair,
 )
 
-__all__ = ["METHODS", "Pair", "best_gain", "pairs_of", "predictions", "psnr_db", "unlit"]
+__all__ = [
+    "METHODS",
+    "Pair",
+    "best_gain",
+    "pairs_of",
+    "predictions",
+    "psnr_db",
+    "relit",
+    "score",
+    "unlit",
+]
 
 Float = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
@@ -96,13 +106,14 @@ def predictions(
     return {
         "unchanged": photo,
         "gain": _codes(photo / 255 * gain),
-        "ratio": _relit(write_pair(folder, shots, known, source, with_map=False), engine),
-        "relit": _relit(write_pair(folder, shots, known, source), engine),
+        "ratio": relit(write_pair(folder, shots, known, source, with_map=False), engine),
+        "relit": relit(write_pair(folder, shots, known, source), engine),
         "lambert": _codes(known.reflectance * received / LIGHT_LUX),
     }
 
 
-def _relit(scene: Path, engine: EngineName) -> Bytes:
+def relit(scene: Path, engine: EngineName, /) -> Bytes:
+    """(H, W, 3) codes of a scene."""
     return render(load_scene(scene), engine=engine).image.rgb
 
 

@@ -161,6 +161,7 @@ def _facts(planned: Planned) -> dict[str, str]:
         moments=planned.plan.moments,
         frames=prepared.frames,
         ambient=prepared.ambient,
+        measured=prepared.measured,
     )
 
 

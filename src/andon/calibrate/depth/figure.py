@@ -42,7 +42,7 @@ def fit_picture(relative: RelativeDepth, known: Knowledge, found: DepthFit, /) -
     x, y, z = np.moveaxis(points[seen], -1, 0)
     shown = colours[seen]
     size = picture.shape[1], picture.shape[0]
-    above = _plan(np.stack([x, -z]), shown, ("x right, m", "−z, m: ahead is up"), size)
+    above = _plan(np.stack([x, -z]), shown, ("x right, m", "z ahead, m"), size, down=-1)
     aside = _plan(np.stack([z, y]), shown, ("z ahead, m", "y down, m"), size)
     tiles = [(_title(relative, found), picture), ("from above", above), ("from the side", aside)]
     return contact_sheet(tiles, columns=3, gap_px=6)
@@ -103,8 +103,10 @@ def _outline(picture: Rgb, mask: NDArray[np.bool_], size: tuple[int, int]) -> No
     cv2.drawContours(picture, edges, -1, MARK, 2)
 
 
-def _plan(points: Float, colours: Rgb, names: tuple[str, str], size: tuple[int, int]) -> Rgb:
-    """Points (2, n), right and down in metres, at one scale for both, over a grid in metres."""
+def _plan(
+    points: Float, colours: Rgb, names: tuple[str, str], size: tuple[int, int], *, down: int = 1
+) -> Rgb:
+    """Points (2, n), right and down in metres, over a grid; the axis of sign −1 runs upwards."""
     from PIL import Image, ImageDraw, ImageFont
 
     image = Image.new("RGB", size, PAPER)
@@ -119,7 +121,8 @@ def _plan(points: Float, colours: Rgb, names: tuple[str, str], size: tuple[int, 
             np.ceil(low[axis] / step) * step, low[axis] + inner[axis] / metre, step
         ):
             place = float(MARGIN_PX + (value - low[axis]) * metre)
-            label = f"{round(value / step) * step + 0.0:.6g}"
+            sign = down if axis else 1
+            label = f"{sign * round(value / step) * step + 0.0:.6g}"
             if axis:
                 draw.line([(MARGIN_PX, place), (size[0] - MARGIN_PX, place)], fill=GRID)
                 draw.text((MARGIN_PX - 6, place), label, fill=INK, font=font, anchor="rm")

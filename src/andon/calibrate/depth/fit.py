@@ -40,8 +40,13 @@ def fit_depth(relative: RelativeDepth, knowledge: Knowledge, /) -> DepthFit:
     """
     _check_scale(knowledge)
     problem = problem_of(relative, knowledge)
-    _check_direction(problem)
     solution = _best(problem)
+    _check_direction(problem, solution)
+    if solution is None:
+        raise InputError(
+            "no scale and shift puts all stated pixels before the camera",
+            remedy="the other --kind, or pixels on nearer surfaces",
+        )
     assumed = _shift_is_undetermined(problem, solution)
     if assumed:
         solution = _without_shift(problem)
@@ -72,8 +77,8 @@ def _scales(problem: Problem, ratio: float) -> list[float]:
     return found
 
 
-def _best(problem: Problem) -> Solution:
-    """The best of many starts. Raises `InputError` where every one is behind the camera."""
+def _best(problem: Problem) -> Solution | None:
+    """The best of many starts; None where every one has a stated pixel behind the camera."""
     values = problem.relative.values[np.isfinite(problem.relative.values)]
     ratios = shifts_to_try(values)
     ratios = np.concatenate([ratios, *_ratios_of_groups(problem)])
@@ -84,12 +89,8 @@ def _best(problem: Problem) -> Solution:
             start = np.array([float(np.median(scales)), ratio])
             starts.append((huber_cost(problem.residuals(start)), start))
     starts = sorted((s for s in starts if np.isfinite(s[0])), key=lambda s: s[0])[:STARTS]
-    if not starts:
-        raise InputError(
-            "no scale and shift puts all stated pixels before the camera",
-            remedy="the other --kind, or pixels on nearer surfaces",
-        )
-    return min((minimise(problem.residuals, start) for _, start in starts), key=lambda s: s.cost)
+    found = [minimise(problem.residuals, start) for _, start in starts]
+    return min(found, key=lambda solution: solution.cost, default=None)
 
 
 def _ratios_of_groups(problem: Problem) -> list[Float]:
@@ -98,11 +99,17 @@ def _ratios_of_groups(problem: Problem) -> list[Float]:
     return [np.array(known + flat)]
 
 
-def _check_direction(problem: Problem) -> None:
-    """Refuses r that falls where the kind says that it rises."""
-    upright, turned = _cost_of(problem), _cost_of(problem.turned())
-    cost, relief = upright
-    if turned[0] < cost / 4 and (cost > DIRECTION_COST or relief < LEAST_RELIEF):
+def _check_direction(problem: Problem, solution: Solution | None) -> None:
+    """Refuses r that falls where the kind says that it rises; `solution` is the best that rises."""
+    cost = float("inf") if solution is None else solution.cost
+    if (
+        solution is not None
+        and cost <= DIRECTION_COST
+        and _relief(problem, solution) > LEAST_RELIEF
+    ):
+        return
+    turned = _best(problem.turned())
+    if turned is not None and turned.cost < cost / 4:
         kind = problem.relative.kind
         raise InputError(
             f"what is known asks for a scale below 0: r does not grow as kind {kind!r} says",
@@ -111,17 +118,10 @@ def _check_direction(problem: Problem) -> None:
         )
 
 
-def _cost_of(problem: Problem) -> tuple[float, float]:
-    """(robust cost, relative relief) of the best fit; infinite where there is none."""
-    try:
-        found = _best(problem)
-    except InputError:
-        return float("inf"), float("inf")
-    low, high = (
-        np.nanpercentile(problem.relative.values, [PERCENTILES[0], PERCENTILES[2]])
-        + found.values[1]
-    )
-    return found.cost, (high - low) / abs(high)
+def _relief(problem: Problem, solution: Solution) -> float:
+    """How much farther the far end of the picture is than the near one, relative."""
+    low, high = np.nanpercentile(problem.relative.values, [PERCENTILES[0], PERCENTILES[2]])
+    return float((high - low) / abs(high + solution.values[1]))
 
 
 def _shift_is_undetermined(problem: Problem, solution: Solution) -> bool:

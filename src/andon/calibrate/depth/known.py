@@ -2,8 +2,9 @@
 
 x is 1/z (``inverse``) or z (``depth``), α = 1/a, s = b/a. Errors are taken to be those of r, which
 an estimator guessed, against x, which somebody measured: the other regression would be flattened by
-the larger error. The start is the least median of squares (Rousseeuw 1984) over lines through pairs
-of pixels, which stands up to half of them being wrong; then Cauchy's weights.
+the larger error. The start is the line through two pixels with which most others agree in depth
+(MSAC, Torr & Zisserman 2000). The least median of squares is no start: half of a picture may be one
+wall, and any line through it is as near to that half. Then come Cauchy's weights.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ Float = NDArray[np.float64]
 LEAST_PIXELS = 3
 PAIRS, MOST_PIXELS, SEED = 600, 4000, 0
 CAUCHY, OUTLIER = 2.385, 3.5
+# Depths of a start agree within this, relative: what estimators err by where they do well.
+AGREEING = 0.1
 ROBUST_STEPS = 20
 
 
@@ -67,7 +70,7 @@ def known_line(relative: RelativeDepth, known_m: Float, /) -> KnownLine:
     x = 1 / metres if relative.kind == "inverse" else metres
     if np.ptp(x) < 1e-6 * x.max() or np.ptp(r) == 0:
         raise InputError("has one depth only, which tells no scale from a shift", field="--known")
-    alpha, ratio = _least_median(x, r)
+    alpha, ratio = _consensus(x, r)
     weight = np.ones(count)
     sigma = 1.0
     for _ in range(ROBUST_STEPS):
@@ -84,20 +87,23 @@ def known_line(relative: RelativeDepth, known_m: Float, /) -> KnownLine:
     return KnownLine(float(alpha), float(ratio), whiten, metres, chosen, outliers)
 
 
-def _least_median(x: Float, r: Float) -> tuple[float, float]:
-    """(α, s) of the line through two pixels to which half of all pixels lie nearest."""
+def _consensus(x: Float, r: Float) -> tuple[float, float]:
+    """(α, s) of the line through two pixels with whose depth most of all pixels agree."""
     generator = np.random.default_rng(SEED)
     if len(x) > MOST_PIXELS:
         kept = generator.choice(len(x), MOST_PIXELS, replace=False)
         x, r = x[kept], r[kept]
     pairs = generator.integers(0, len(x), (PAIRS, 2))
-    run = x[pairs[:, 1]] - x[pairs[:, 0]]
-    pairs, run = pairs[run != 0], run[run != 0]
-    alphas = (r[pairs[:, 1]] - r[pairs[:, 0]]) / run
-    ratios = alphas * x[pairs[:, 0]] - r[pairs[:, 0]]
-    medians = [
-        np.median(np.abs(r - (alpha * x - ratio)))
-        for alpha, ratio in zip(alphas, ratios, strict=True)
-    ]
-    best = int(np.argmin(medians))
+    run, rise = (np.diff(values[pairs], axis=1)[:, 0] for values in (x, r))
+    sound = (run != 0) & (rise != 0)
+    if not sound.any():
+        raise InputError("has no two depths that differ where r does", field="--known")
+    alphas = rise[sound] / run[sound]
+    ratios = alphas * x[pairs[sound, 0]] - r[pairs[sound, 0]]
+    costs: list[float] = []
+    for alpha, ratio in zip(alphas, ratios, strict=True):
+        agreement = (r + ratio) / (alpha * x)  # 1 where the depth is the known one, or its inverse
+        off = np.minimum(np.abs(np.log(np.maximum(agreement, 1e-9))) / AGREEING, 1)
+        costs.append(float(off @ off))
+    best = int(np.argmin(costs))
     return float(alphas[best]), float(ratios[best])

@@ -22,7 +22,8 @@ Residuals = Callable[[Float], Float]
 # as efficient as squares where errors are normal (Huber 1981, section 4.5).
 HUBER = 1.345
 MOST_STEPS = 100
-STEP_TOLERANCE = 1e-14
+IMPOSSIBLE = 1e100
+STEP_TOLERANCE, COST_TOLERANCE = 1e-14, 1e-13
 DIFFERENCE = 1e-6
 
 
@@ -39,7 +40,7 @@ class Solution:
 def huber_cost(residuals: Float, /) -> float:
     """Σρ of residuals in standard deviations; ∞ where one is not finite."""
     size = np.abs(residuals)
-    if not np.isfinite(size).all():
+    if not (size < IMPOSSIBLE).all():
         return float("inf")
     return float(np.where(size <= HUBER, size**2 / 2, HUBER * (size - HUBER / 2)).sum())
 
@@ -67,8 +68,11 @@ def minimise(residuals: Residuals, start: Float, /) -> Solution:
         weight = np.minimum(1, HUBER / np.maximum(np.abs(now), 1e-300))
         normal = slope.T @ (weight[:, None] * slope)
         gradient = slope.T @ (weight * now)
-        scale = np.maximum(np.diag(normal), 1e-300)
-        step = np.linalg.lstsq(normal + damping * np.diag(scale), -gradient, rcond=None)[0]
+        if not np.isfinite(normal).all():  # at the very edge of what is possible
+            break
+        # An unknown that nothing depends on stays where it is.
+        scale = np.maximum(np.diag(normal), 1e-12 * normal.max() + 1e-300)
+        step = np.linalg.solve(normal + damping * np.diag(scale), -gradient)
         found = residuals(at + step)
         better = huber_cost(found)
         if not better < cost:
@@ -76,6 +80,9 @@ def minimise(residuals: Residuals, start: Float, /) -> Solution:
                 break
             damping *= 10
             continue
+        done = cost - better <= COST_TOLERANCE * cost
         at, now, cost, damping = at + step, found, better, max(damping / 10, 1e-14)
+        if done:
+            break
         slope = jacobian(residuals, at)
-    return Solution(at, now, slope, cost)
+    return Solution(at, now, jacobian(residuals, at), cost)

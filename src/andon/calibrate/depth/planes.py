@@ -57,6 +57,11 @@ class FlatPixels:
         return self._moments.plane(ratio) / scale
 
     @cached_property
+    def middle(self) -> float:
+        """The median of `values`."""
+        return float(np.median(self.values))
+
+    @cached_property
     def _moments(self) -> _Moments:
         return _Moments.of(self.values, self.rays)
 
@@ -142,7 +147,10 @@ class _Moments:
     def plane(self, ratio: float) -> Float:
         """(3,) m·a: least squares of (r + s)·(m·ray) = 1."""
         normal = self.constant + ratio * (self.linear + ratio * self.square)
-        solved = np.linalg.lstsq(normal, self.value_ray + ratio * self.ray, rcond=None)[0]
+        try:
+            solved = np.linalg.solve(normal, self.value_ray + ratio * self.ray)
+        except np.linalg.LinAlgError:  # r + s is 0 wherever it counts: no plane at all
+            return np.full(3, np.nan)
         return np.asarray(solved, np.float64)
 
 

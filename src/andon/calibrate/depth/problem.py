@@ -98,7 +98,10 @@ class Problem:
 
     def residuals(self, unknowns: Float) -> Float:
         """(m,) at (log a, s); NaN where a pixel of a constraint is behind the camera."""
-        at = (float(unknowns[0]), float(unknowns[1]))
+        with np.errstate(over="ignore", invalid="ignore"):  # steps that are taken back
+            return self._residuals((float(unknowns[0]), float(unknowns[1])))
+
+    def _residuals(self, at: tuple[float, float]) -> Float:
         found = [
             np.log(row.found / row.stated) / LENGTH_SHARE
             for row in self.rows(*at)
@@ -130,8 +133,7 @@ class Problem:
         """Of kind ``depth``: how far log(r + s) in the middle of the plane is from flat."""
         if flat.shift is None:
             return []
-        middle = float(np.median(flat.values))
-        stated, error = flat.shift
+        middle, (stated, error) = flat.middle, flat.shift
         if not np.isfinite(error) or middle + stated <= 0:
             return [0.0]
         if middle + ratio <= 0:

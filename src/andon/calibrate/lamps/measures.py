@@ -44,7 +44,8 @@ class Measures:
     Attributes
     ----------
     pixels : of which the others are means.
-    rmse_linear : of linear camera values, 1 is the camera's white; not clipped.
+    rmse_linear : of linear camera values, 1 is the camera's white; clipped there where the
+        reference is.
     rmse_encoded : of values as the camera encodes them, clipped, 0…1.
     psnr_db : −20·lg of `rmse_encoded`; ∞ where there is no error.
     delta_e_mean, delta_e_95 : CIEDE2000 of the pictures as an sRGB screen shows them, mean and
@@ -72,11 +73,17 @@ def measured(
     response: Response,
     /,
     gain: Float | None = None,
+    *,
+    white: float = 1.0,
 ) -> Measures:
-    """Error of linear values (n, 3) against those of the reference (n, 3), n ≥ 1."""
+    """Error of linear values (n, 3) against those of the reference (n, 3), n ≥ 1.
+
+    `white` is the largest value that the reference can have.
+    """
+    predicted = np.minimum(predicted, white)
     codes, wanted = encoded(predicted, response), encoded(reference, response)
     rmse = float(np.sqrt(np.mean((codes - wanted) ** 2)))
-    away = delta_e_2000(lab_of_linear(srgb_decode(codes)), lab_of_linear(srgb_decode(wanted)))
+    away = delta_e_2000(_lab(codes), _lab(wanted))
     return Measures(
         len(predicted),
         float(np.sqrt(np.mean((predicted - reference) ** 2))),
@@ -86,6 +93,10 @@ def measured(
         float(np.percentile(away, 95)),
         None if gain is None else (float(gain[0]), float(gain[1]), float(gain[2])),
     )
+
+
+def _lab(codes: Float) -> Float:
+    return lab_of_linear(np.asarray(srgb_decode(codes), np.float64))
 
 
 def best_gain(photograph: Float, reference: Float, response: Response, /) -> Float:

@@ -58,7 +58,7 @@ class Target:
         return replace(self, linear=new.decode(np.clip(old.encode(self.linear), 0, 1)))
 
 
-def picture_of(source: Any, field: str, /) -> tuple[Picture, str]:
+def _picture_of(source: Any, field: str, /) -> tuple[Picture, str]:
     """A picture from a path, or an array (H, W, 3) as of `andon.relight`; and its name."""
     if isinstance(source, str | Path):
         return read_picture(source), str(source)
@@ -89,7 +89,7 @@ def target_of(source: Any, frame: CameraFrame, view: View, align: Aligning, /) -
     InputError
         for another size, pixels that are no numbers, and a camera that moved too far.
     """
-    picture, name = picture_of(source, "reference")
+    picture, name = _picture_of(source, "reference")
     _check_size(picture.shape, view, name)
     linear = np.asarray(linear_from_picture(picture, frame.response), np.float64)
     if not np.isfinite(linear).all():
@@ -101,7 +101,7 @@ def target_of(source: Any, frame: CameraFrame, view: View, align: Aligning, /) -
     seen = np.ones(view.shape, bool)
     if view.distortion:
         linear = np.asarray(undistort(linear, view), np.float64)
-        seen = np.isfinite(linear).all(axis=-1)
+        seen = np.asarray(np.isfinite(linear).all(axis=-1), bool)
         linear = np.nan_to_num(linear)
         white = undistort(white.astype(np.uint8), view, method="nearest") > 0
     motion = NOT_ASKED

@@ -1,9 +1,9 @@
 """Whether the confidence in relit pixels says how wrong they are.
 
 The room of `synthetic`, photographed four stops under in 8 bits, is lit by lamps that brighten it
-and shown as bright as before: a step of the photograph becomes one to some hundred codes. Radiance's
-photograph has no noise and E0 is Radiance's, so what is wrong comes of the steps, but for the edges
-of shadows.
+and shown as bright as before: a step of the photograph becomes one to some hundred codes. The
+photograph has no noise and E0 is Radiance's, so what is wrong comes of the steps, but for the
+edges of shadows.
 """
 
 from __future__ import annotations

@@ -1,0 +1,110 @@
+"""From [surface] to what is measured of the real surface in each view."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from andon.composite.model import Ambient, MeasuredSurface
+from andon.composite.per_lux import map_scale
+from andon.engines.measured_curves import curves_of, one_view
+from andon.errors import InputError
+from andon.files.pictures import read_picture
+from andon.lenses import undistort
+from andon.quantities import CameraFrame
+from andon.scene import Scene
+from andon.spaces import View
+from andon.surface.model import SurfaceModel
+
+__all__ = ["checked_reflectance", "measured_of", "refuse_without_photograph"]
+
+Float = NDArray[np.float64]
+
+# Beyond these ρ and photograph differ by more than an exposure that was guessed.
+LIKELY_SCALES = (0.2, 5.0)
+
+
+def measured_of(
+    scene: Scene,
+    views: Mapping[str, View],
+    frames: Mapping[str, CameraFrame],
+    ambient: Ambient,
+    model: SurfaceModel,
+    /,
+) -> tuple[dict[str, MeasuredSurface], tuple[str, ...]]:
+    """Of each of `views` (as captured: with their distortion) what [surface] states of it; notes.
+
+    Raises `InputError` for pictures of another size, of two views, or that are no reflectance, and
+    for curves of surfaces that are not there.
+    """
+    found = curves_of(scene, views, model)
+    if scene.surface is None or scene.surface.reflectance_map is None:
+        return found, ()
+    rho = _reflectance(scene, scene.surface.reflectance_map, views)
+    name = next(iter(views))
+    scale = map_scale(rho, frames[name], ambient)
+    found[name] = replace(found.get(name, MeasuredSurface()), reflectance=scale * rho)
+    return found, _on_scale(scale)
+
+
+def _reflectance(scene: Scene, reference: str, views: Mapping[str, View]) -> Float:
+    """(H, W, 3) ρ of the undistorted view."""
+    view = one_view(scene, views, "surface.reflectance_map")
+    path = scene.path(reference, "surface.reflectance_map")
+    picture = read_picture(path)
+    if picture.shape != view.shape:
+        height, width = picture.shape
+        raise InputError(
+            f"is {width}×{height} px but the camera is {view.width}×{view.height}",
+            file=str(path),
+            field="surface.reflectance_map",
+            remedy="give ρ of the photograph's own pixels",
+        )
+    rho = checked_reflectance(picture.linear(), "surface.reflectance_map", path)
+    # Where the lens saw nothing there is nothing to light.
+    return np.nan_to_num(undistort(rho, view))
+
+
+def checked_reflectance(rho: Float, field: str, path: Path | None = None, /) -> Float:
+    """`rho` (H, W, 3). Raises `InputError` where a value is no reflectance."""
+    bad = int(np.count_nonzero(~((rho >= 0) & (rho <= 1))))
+    if bad:
+        raise InputError(
+            f"ρ must be in [0, 1] everywhere, {bad} of {rho.size} values are not "
+            f"(lowest {np.nanmin(rho):g}, highest {np.nanmax(rho):g})",
+            file=None if path is None else str(path),
+            field=field,
+            remedy="state linear reflectance: 0 black, 1 a perfect white",
+        )
+    return rho
+
+
+def _on_scale(scale: Float) -> tuple[str, ...]:
+    low, high = LIKELY_SCALES
+    if low <= scale.min() and scale.max() <= high:
+        return ()
+    times = ", ".join(f"{value:.2g}" for value in scale)
+    return (
+        f"where E0 is strong the photograph shows {times} times surface.reflectance_map (R, G, B): "
+        "the map was scaled so; check capture.luminance_per_unit and E0",
+    )
+
+
+def refuse_without_photograph(scene: Scene, /) -> None:
+    """Raises `InputError` for what belongs to a photograph, where there is none."""
+    table = scene.surface
+    for key, remedy in (
+        ("reflectance_map", "state surface.reflectance, or colours in the mesh"),
+        ("response", "leave it out: virtual surfaces have no camera"),
+    ):
+        if table is not None and getattr(table, key):
+            raise InputError(
+                "belongs to a photograph, and there is none",
+                file=scene.file,
+                field=f"surface.{key}",
+                remedy=remedy,
+            )

@@ -75,7 +75,7 @@ def test_expected_errors_are_those_of_many_photographs(response, tone, noise):
 
 
 def test_the_luminance_errs_by_its_share():
-    """Three channels of 2, 3 and 4 % that err on their own, weighted by their share of the light."""
+    """Three channels of 2, 3 and 4 % that err on their own, each by its share of light."""
     light = np.broadcast_to([0.3, 0.2, 0.1], (HEIGHT, WIDTH, 3))
     sigma = light * [0.02, 0.03, 0.04]
     found = trusted(frame_of(light, LINEAR), np.full(light.shape, 2.0), sigma).relative_error

@@ -91,7 +91,9 @@ def test_codes_without_data_are_named():
 
 def dipping(codes):
     """From 120 to 200 the codes run backwards: more light, less code."""
-    return np.where((codes >= 120) & (codes <= 200), 320 - codes.astype(int), codes).astype(np.uint8)
+    return np.where((codes >= 120) & (codes <= 200), 320 - codes.astype(int), codes).astype(
+        np.uint8
+    )
 
 
 @pytest.fixture(scope="module")

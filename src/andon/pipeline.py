@@ -32,7 +32,7 @@ from andon.quantities import (
     Photometry,
     Surface,
 )
-from andon.responses import SRGB, Response
+from andon.responses import SRGB, Response, SurfaceCurve
 from andon.scene import Scene
 from andon.spaces import View
 from andon.transport.baked.model import BakedSeen
@@ -205,26 +205,20 @@ class Renderer:
         view : ``mono``, ``left`` or ``right``; None is the rig's first.
         """
         handles = self.draw(time_seconds, view, timed=True)
-        surface, illuminance, luminance, image = self._engine.read(*handles)
-        captured = self.prepared.frames[self._view_name(view)]
-        bodies, filtered = self._engine.read_bodies(captured, handles[0], self._moment)
-        layered = self._engine.read_glass(captured, handles[0], self._moment)
-        baked = self._engine.read_baked(surface, self._moment)
-        report = self._report(captured, surface, layered, baked)
-        seen = self._engine.read_seen(captured, *handles[2:])
+        engine, moment = self._engine, self._moment
+        drawn = engine.read(*handles)
+        frame = self.prepared.frames[self._view_name(view)]
+        layered = engine.read_glass(frame, handles[0], moment)
+        baked = engine.read_baked(drawn[0], moment)
         return Frame(
-            self.prepared.captured(captured.view.name),
-            surface,
-            illuminance,
-            luminance,
-            image,
-            report,
-            bodies,
-            filtered,
-            self._engine.read_glare(captured),
-            seen,
+            self.prepared.captured(frame.view.name),
+            *drawn,
+            self._report(frame, drawn[0], layered, baked),
+            *engine.read_bodies(frame, handles[0], moment),
+            engine.read_glare(frame),
+            engine.read_seen(frame, *handles[2:]),
             layered,
-            self._engine.read_highlights(captured),
+            engine.read_highlights(frame),
             baked,
             self.prepared,
         )
@@ -329,6 +323,7 @@ def relight(
     photometry: Photometry = "absolute",
     engine: EngineName = "auto",
     reflectance_map: NDArray[Any] | None = None,
+    curves: SurfaceCurve | Sequence[tuple[SurfaceCurve, NDArray[np.bool_]]] = (),
 ) -> Frame:
     """Relights arrays: for those who have a picture and its depth in memory already.
 
@@ -343,6 +338,8 @@ def relight(
     dimming : share of E0 that is left, ≥ 0; number or three channels.
     reflectance_map : (H, W, 3) linear ρ in [0, 1], that added light falls on where E0 is too weak
         for the photograph to tell it; None: only the photograph tells.
+    curves : of the whole picture, or pairs of a surface's curve and its pixels (H, W) bool; where
+        masks overlap the later one counts.
 
     Raises
     ------
@@ -361,6 +358,7 @@ def relight(
         response=response,
         photometry=photometry,
         reflectance_map=reflectance_map,
+        curves=curves,
     )
     return Renderer(prepared, engine).render()
 

@@ -50,9 +50,7 @@ class GpuView:
         view = frame.view
         start = engine.start
         shells = None if prepared.shells is None else prepared.shells.views[view.name]
-        self.surface = SurfaceStage(
-            gpu, prepared.surface, view, start.bodies, start.movers, shells
-        )
+        self.surface = SurfaceStage(gpu, prepared.surface, view, start.bodies, start.movers, shells)
         seen = self.surface.surface
         self.composite = composite.CompositeStage(
             gpu,
@@ -148,6 +146,8 @@ class GpuView:
         return bool(self._moved.since_last([*moment.movers, *bodies]))
 
     def _entry_point(self, prepared: Prepared) -> str:
+        if self.composite.has_curves:
+            return "relit_with_curves"
         if self.composite.has_maps:
             return "relit_with_maps"
         has_objects = prepared.surface.has_objects or self.surface.has_bodies

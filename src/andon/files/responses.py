@@ -64,7 +64,7 @@ def read_surface_response(path: str | Path, *, limits: Limits = DEFAULT_LIMITS) 
     InputError
         if the columns are others, a number is none or < 0, or a column does not rise strictly.
     """
-    table = _read_table(path, SURFACE_COLUMNS, limits, most=np.finfo(np.float32).max)
+    table = _read_table(path, SURFACE_COLUMNS, limits, most=float(np.finfo(np.float32).max))
     try:
         return SurfaceCurve(table[:, 0].copy(), table[:, 1:].copy())
     except InputError as error:

@@ -210,17 +210,19 @@ class Renderer:
         frame = self.prepared.frames[self._view_name(view)]
         layered = engine.read_glass(frame, handles[0], moment)
         baked = engine.read_baked(drawn[0], moment)
+        bodies, filtered = engine.read_bodies(frame, handles[0], moment)
         return Frame(
             self.prepared.captured(frame.view.name),
             *drawn,
-            self._report(frame, drawn[0], layered, baked),
-            *engine.read_bodies(frame, handles[0], moment),
-            engine.read_glare(frame),
-            engine.read_seen(frame, *handles[2:]),
-            layered,
-            engine.read_highlights(frame),
-            baked,
-            self.prepared,
+            report=self._report(frame, drawn[0], layered, baked),
+            bodies=bodies,
+            glow=filtered,
+            glare=engine.read_glare(frame),
+            seen=engine.read_seen(frame, *handles[2:]),
+            glass=layered,
+            highlights=engine.read_highlights(frame),
+            baked=baked,
+            prepared=self.prepared,
         )
 
     def picture(self, time_seconds: float = 0.0, view: str | None = None) -> NDArray[np.uint8]:

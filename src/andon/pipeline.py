@@ -32,7 +32,7 @@ from andon.quantities import (
     Photometry,
     Surface,
 )
-from andon.responses import SRGB, Response
+from andon.responses import SRGB, Response, SurfaceCurve
 from andon.scene import Scene
 from andon.spaces import View
 from andon.transport.baked.model import BakedSeen
@@ -329,6 +329,7 @@ def relight(
     photometry: Photometry = "absolute",
     engine: EngineName = "auto",
     reflectance_map: NDArray[Any] | None = None,
+    curves: SurfaceCurve | Sequence[tuple[SurfaceCurve, NDArray[np.bool_]]] = (),
 ) -> Frame:
     """Relights arrays: for those who have a picture and its depth in memory already.
 
@@ -343,6 +344,8 @@ def relight(
     dimming : share of E0 that is left, ≥ 0; number or three channels.
     reflectance_map : (H, W, 3) linear ρ in [0, 1], that added light falls on where E0 is too weak
         for the photograph to tell it; None: only the photograph tells.
+    curves : of the whole picture, or pairs of a surface's curve and its pixels (H, W) bool; where
+        masks overlap the later one counts.
 
     Raises
     ------
@@ -361,6 +364,7 @@ def relight(
         response=response,
         photometry=photometry,
         reflectance_map=reflectance_map,
+        curves=curves,
     )
     return Renderer(prepared, engine).render()
 

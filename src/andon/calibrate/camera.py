@@ -26,12 +26,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.calibrate.camera_residuals import Residuals, residuals_of
+from andon.capture.align import align
 from andon.capture.brackets import Bracket, check_exposures
 from andon.capture.recovery import CODES, Recovery, recover_curves, seconds_of
 from andon.errors import InputError
 from andon.responses import Response
 
-__all__ = ["CHANNELS", "CameraCalibration", "calibrate_camera", "check_calibration"]
+__all__ = [
+    "CHANNELS",
+    "CameraCalibration",
+    "calibrate_camera",
+    "check_calibration",
+    "check_still",
+]
 
 Float = NDArray[np.float64]
 
@@ -40,11 +47,13 @@ CHANNELS = "red", "green", "blue"
 LEAST_SUPPORT = 4
 # Exposures and g are found in turn, until no exposure moves by more.
 ROUNDS, SETTLED_EV = 12, 0.003
-ROUND_PIXELS = 50_000
+ROUND_PIXELS = 40_000
 # Shutters and apertures keep their stops to a third; what is off by so many stops is no tolerance.
 CONTRADICTING_EV = 1.0
 # A fall of so many standard errors and stops is none of noise.
 FALL_ERRORS, LEAST_FALL_EV = 4.0, 0.1
+# What is left of a motion that alignment found: more than what it leaves of those that it corrects.
+MOST_SHIFT_PX, MOST_TURN_DEGREES = 1.5, 0.3
 # A tenth of the range: no curve explains such photographs.
 MOST_RMS_CODES = 25.0
 
@@ -103,6 +112,20 @@ def calibrate_camera(bracket: Bracket, /) -> CameraCalibration:
         float(np.mean(used)),
         min(channel.kept_share for channel in recovery.channels),
     )
+
+
+def check_still(bracket: Bracket, /) -> None:
+    """Refuses photographs that, aligned or not, still lie off each other. Raises `InputError`."""
+    for name, move in zip(bracket.names, align(bracket, "auto")[1], strict=True):
+        x, y = move.shift_px
+        if np.hypot(x, y) > MOST_SHIFT_PX or abs(move.turn_degrees) > MOST_TURN_DEGREES:
+            raise InputError(
+                f"lies {x:+.1f}, {y:+.1f} px off {bracket.names[bracket.middle]}, turned by "
+                f"{move.turn_degrees:+.2f}°, after alignment",
+                file=name,
+                field="--align",
+                remedy="--align auto, or ecc where the camera was turned; or leave it out",
+            )
 
 
 def check_calibration(bracket: Bracket, calibration: CameraCalibration, /) -> None:

@@ -17,7 +17,7 @@ Float = NDArray[np.float64]
 COLOURS = ((190, 40, 30), (20, 130, 60), (40, 80, 190))
 # The same on paper, as if seen through: thousands of points must not hide their curve.
 PALE = ((236, 176, 168), (168, 214, 180), (178, 192, 236))
-POINTS = 3000
+POINTS = 1500
 # Darker exposures are the curve's own invention where no code stands for them.
 LEAST_EV, MOST_EV = -12.0, 6.0
 BAND_CODES = 8
@@ -44,9 +44,9 @@ def _chosen(calibration: CameraCalibration, channel: int) -> tuple[Float, Float,
     codes = residuals.codes[..., channel][known].astype(float)
     exposure = residuals.log_exposure[..., channel][known] / np.log(2)
     left = codes - residuals.predicted[..., channel][known]
-    order = np.argsort(codes, kind="stable")
-    levels = np.random.default_rng(0).uniform(0, 255, POINTS)
-    pick = order[np.clip(np.searchsorted(codes[order], levels), 0, len(order) - 1)]
+    rarity = 1 / np.bincount(codes.astype(int), minlength=256)[codes.astype(int)]
+    count, generator = min(POINTS, len(codes)), np.random.default_rng(0)
+    pick = generator.choice(len(codes), count, replace=False, p=rarity / rarity.sum())
     return exposure[pick], codes[pick], left[pick]
 
 
@@ -59,8 +59,9 @@ def _curves(calibration: CameraCalibration) -> Panel:
     for c, name in enumerate(CHANNELS):
         exposure, code, _ = _chosen(calibration, c)
         points.append(Points("", PALE[c], _within(exposure, low, high), code))
-        shown = np.where(_is_supported(calibration, c), codes, np.nan)
-        lines.append(Curve(name, COLOURS[c], _within(curves[:, c], low, high), shown, 2.5))
+        inside = (curves[:, c] >= low) & (curves[:, c] <= high)
+        shown = np.where(_is_supported(calibration, c) & inside, codes, np.nan)
+        lines.append(Curve(name, COLOURS[c], curves[:, c], shown, 2.5))
     return Panel(
         "Response of the camera: code over exposure, of each pixel as its other photographs say",
         "exposure, EV from that of code 128 (relative)",

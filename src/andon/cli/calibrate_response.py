@@ -76,12 +76,13 @@ def run(typed: BracketOptions, out: Path, figure: Path | None, facts: Path | Non
             check_writable(path, (suffix,), field)
     check_bracket(typed, outputs)
     bracket = read_bracket(typed, outputs)
-    from andon.calibrate.camera import calibrate_camera, check_calibration
+    from andon.calibrate.camera import calibrate_camera, check_calibration, check_still
     from andon.capture.brackets import check_exposures
     from andon.files.responses import write_response
 
     check_exposures(bracket)
     bracket, moves = aligned_bracket(bracket, typed.align)
+    check_still(bracket)
     calibration = calibrate_camera(bracket)
     check_calibration(bracket, calibration)
     write_response(out, calibration.response)

@@ -148,6 +148,8 @@ class GpuView:
         return bool(self._moved.since_last([*moment.movers, *bodies]))
 
     def _entry_point(self, prepared: Prepared) -> str:
+        if self.composite.has_curves:
+            return "relit_with_curves"
         if self.composite.has_maps:
             return "relit_with_maps"
         has_objects = prepared.surface.has_objects or self.surface.has_bodies

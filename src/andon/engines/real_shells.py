@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from andon.lamps import Body, Lamp
-from andon.quantities import CameraFrame, Geometry
+from andon.quantities import CameraFrame, Geometry, Surface
+from andon.spaces import View
 from andon.surface import reference
 from andon.surface.cutting import parted
 from andon.surface.model import SurfaceModel
@@ -80,8 +81,15 @@ def real_shells(
     rest, parts = parted(surface.occluder.geometry, real, own)
     views = {
         name: find_shells(
-            reference.see_real(surface, frame.view), bodies, [margins[b.name] for b in bodies]
+            _measured(surface, frame.view), bodies, [margins[body.name] for body in bodies]
         )
         for name, frame in frames.items()
     }
     return RealShells(frozenset(body.name for body in real), rest, parts, views, margins)
+
+
+def _measured(surface: SurfaceModel, view: View) -> Surface:
+    """The real surface without what was filled: a hole may be the shell, and not what is behind."""
+    seen = reference.see_real(surface, view)
+    guessed = surface.filled.get(view.name)
+    return seen if guessed is None else replace(seen, valid=seen.valid & ~guessed)

@@ -56,6 +56,7 @@ IN_ORDER = (
     "photographs",
     "lampshade",
     "photometry",
+    "responses",
     "probe_capture",
     "probe_bounces",
     "harmonics",

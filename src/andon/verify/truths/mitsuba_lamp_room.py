@@ -203,7 +203,9 @@ def _furniture() -> dict[str, Any]:
         | {"bsdf": _diffuse((0.66, 0.50, 0.18))},
     }
     for number, (x, z) in enumerate(((-0.75, -1.4), (0.25, -1.4), (-0.75, -0.8), (0.25, -0.8))):
-        made[f"leg{number}"] = _box((x, (TABLE_M - 0.04) / 2, z), (0.025, TABLE_M / 2 - 0.02, 0.025))
+        made[f"leg{number}"] = _box(
+            (x, (TABLE_M - 0.04) / 2, z), (0.025, TABLE_M / 2 - 0.02, 0.025)
+        )
         made[f"leg{number}"] |= {"bsdf": _diffuse((0.30, 0.18, 0.11))}
     return made
 

@@ -118,8 +118,8 @@ def _bands(calibration: CameraCalibration, channel: int) -> tuple[Float, Float]:
     band = (predicted[known] // BAND_CODES).astype(int)
     count = np.bincount(band, minlength=256 // BAND_CODES)
     squares = np.bincount(band, left**2, 256 // BAND_CODES)
-    rms = np.sqrt(squares / np.maximum(count, 1))
-    middle = (np.arange(len(rms)) + 0.5) * BAND_CODES
+    rms: Float = np.sqrt(squares / np.maximum(count, 1))
+    middle = (np.arange(len(rms), dtype=np.float64) + 0.5) * BAND_CODES
     return middle, np.where(count >= 20, rms, np.nan)
 
 

@@ -12,6 +12,7 @@ from andon.capture.noise import noise_codes
 from andon.composite.confidence import Cause, Confidence, confidence_of
 from andon.composite.reference import relit_linear
 from andon.display.reference import shown_codes
+from andon.engines.measured import beyond_curves_of
 from andon.errors import InputError
 
 if TYPE_CHECKING:
@@ -49,16 +50,19 @@ def confidence_of_frame(frame: Frame, /) -> Confidence:
     def shown(light: Float) -> Float:
         return shown_codes((light + spread) * white, tone, captured.response, white)
 
-    return confidence_of(captured, relit, shown, _causes(frame, lux), noise_codes(captured))
+    causes = _causes(frame, lux, beyond_curves_of(prepared, captured, lux))
+    return confidence_of(captured, relit, shown, causes, noise_codes(captured))
 
 
-def _causes(frame: Frame, lux: Float) -> dict[Cause, Mask]:
+def _causes(frame: Frame, lux: Float, beyond: Mask | None) -> dict[Cause, Mask]:
     """Pixels of which the photograph does not tell."""
     surface = frame.surface
     virtual = surface.is_object.copy()
     if frame.bodies is not None:
         virtual |= (np.asarray(frame.bodies.cd_m2) > 0).any(axis=-1)
     causes = {Cause.VIRTUAL: virtual}
+    if beyond is not None:
+        causes[Cause.BEYOND] = beyond
     if lux.any():
         causes[Cause.HOLE] = ~surface.valid
     if frame.baked is not None:

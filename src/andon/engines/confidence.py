@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from andon.capture.noise import noise_codes
 from andon.composite.confidence import Cause, Confidence, confidence_of
-from andon.composite.curves import beyond_curves
 from andon.composite.reference import relit_linear
 from andon.display.reference import shown_codes
+from andon.engines.measured import beyond_curves_of
 from andon.errors import InputError
 
 if TYPE_CHECKING:
@@ -54,21 +54,20 @@ def confidence_of_frame(frame: Frame, /, sigma: Float | None = None) -> Confiden
     def shown(light: Float) -> Float:
         return shown_codes((light + spread) * white, tone, captured.response, white)
 
+    causes = _causes(frame, lux, beyond_curves_of(prepared, captured, lux))
     sigma = noise_codes(captured) if sigma is None else sigma
-    causes = _causes(frame, lux)
-    beyond = beyond_curves(linear, new, measured)
-    if beyond is not None:  # what was not changed needs no curve
-        causes[Cause.BEYOND] = beyond & ~np.isclose(new, linear, rtol=1e-6, atol=0).all(axis=-1)
     return confidence_of(captured, relit, shown, causes, sigma)
 
 
-def _causes(frame: Frame, lux: Float) -> dict[Cause, Mask]:
+def _causes(frame: Frame, lux: Float, beyond: Mask | None) -> dict[Cause, Mask]:
     """Pixels of which the photograph does not tell."""
     surface = frame.surface
     virtual = surface.is_object.copy()
     if frame.bodies is not None:
         virtual |= (np.asarray(frame.bodies.cd_m2) > 0).any(axis=-1)
     causes = {Cause.VIRTUAL: virtual}
+    if beyond is not None:
+        causes[Cause.BEYOND] = beyond
     if lux.any():
         causes[Cause.HOLE] = ~surface.valid
     if frame.baked is not None:

@@ -57,6 +57,7 @@ IN_ORDER = (
     "lampshade",
     "photometry",
     "responses",
+    "ambient",
     "probe_capture",
     "probe_bounces",
     "harmonics",

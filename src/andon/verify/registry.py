@@ -58,6 +58,7 @@ IN_ORDER = (
     "lampshade",
     "photometry",
     "responses",
+    "ambient",
     "probe_capture",
     "probe_bounces",
     "harmonics",

@@ -54,6 +54,7 @@ IN_ORDER = (
     "penumbra",
     "synthetic",
     "confidence",
+    "lamp_on",
     "photographs",
     "lampshade",
     "photometry",

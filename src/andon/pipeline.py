@@ -166,35 +166,21 @@ class Renderer:
         view : ``mono``, ``left`` or ``right``; None is the rig's first.
         """
         handles = self.draw(time_seconds, view, timed=True)
-        surface, illuminance, luminance, image = self._engine.read(*handles)
-        captured = self.prepared.frames[self._view_name(view)]
-        bodies, filtered = self._engine.read_bodies(captured, handles[0], self._moment)
-        layered = self._engine.read_glass(captured, handles[0], self._moment)
-        baked = self._engine.read_baked(surface, self._moment)
-        report = report_of(
-            self.prepared,
-            self._engine,
-            self._moment,
-            captured,
-            surface,
-            illuminance,
-            layered,
-            baked,
-        )
-        seen = self._engine.read_seen(captured, *handles[2:])
+        engine, moment = self._engine, self._moment
+        drawn = engine.read(*handles)
+        frame = self.prepared.frames[self._view_name(view)]
+        layered = engine.read_glass(frame, handles[0], moment)
+        baked = engine.read_baked(drawn[0], moment)
+        report = report_of(self.prepared, engine, moment, frame, *drawn[:2], layered, baked)
         return Frame(
-            self.prepared.captured(captured.view.name),
-            surface,
-            illuminance,
-            luminance,
-            image,
+            self.prepared.captured(frame.view.name),
+            *drawn,
             replace(report, stage_seconds=self.stage_seconds),
-            bodies,
-            filtered,
-            self._engine.read_glare(captured),
-            seen,
+            *engine.read_bodies(frame, handles[0], moment),
+            engine.read_glare(frame),
+            engine.read_seen(frame, *handles[2:]),
             layered,
-            self._engine.read_highlights(captured),
+            engine.read_highlights(frame),
             baked,
             self.prepared,
         )

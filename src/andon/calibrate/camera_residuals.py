@@ -111,4 +111,6 @@ def _exposures(stops: Float) -> Float:
         telling = stops[:, k, c][np.isfinite(stops[:, k, c])]
         if len(telling) >= LEAST_TELLING:
             found[k, c] = np.median(telling)
-    return np.array([np.median(row[np.isfinite(row)]) if np.isfinite(row).any() else np.nan for row in found])
+    return np.array(
+        [np.median(row[np.isfinite(row)]) if np.isfinite(row).any() else np.nan for row in found]
+    )

@@ -215,7 +215,9 @@ class _Solved:
         matrix = np.diag(_sums(codes, weight))
         # What the elimination of ln E ties together: the codes that one pixel has.
         pairs = codes[:, :, None] * CODES + codes[:, None, :]
-        ties = np.bincount(pairs.ravel(), (weight[:, :, None] * share[:, None, :]).ravel(), CODES**2)
+        ties = np.bincount(
+            pairs.ravel(), (weight[:, :, None] * share[:, None, :]).ravel(), CODES**2
+        )
         matrix = matrix - ties.reshape(CODES, CODES) + _smoothness()
         matrix[MIDDLE, MIDDLE] += weight.sum() + 1.0  # g(128) = 0
         curve = np.linalg.solve(matrix, right)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.cli.body_notes import notes_on_bodies
+from andon.cli.body_notes import notes_on_bodies, notes_on_shells
 from andon.engines.prepared import Prepared
 from andon.lamps import Lamp, SpotLamp
 from andon.pipeline import Frame
@@ -37,12 +37,14 @@ def notes_on(
 ) -> list[str]:
     """One line each: what was found, and what can be done about it."""
     surface, model = frame.surface, prepared.surface
+    bodies = prepared.bodies(time_seconds)
     return [
         *model.notes,
         *_on_depth(surface, has_photograph),
         *_on_objects(surface, prepared, time_seconds, has_photograph),
         *_on_lamps(surface, prepared, time_seconds),
-        *notes_on_bodies(surface, prepared.bodies(time_seconds), prepared.lamps(time_seconds)),
+        *notes_on_bodies(surface, bodies, prepared.lamps(time_seconds)),
+        *notes_on_shells(prepared.shells, surface.view.name, bodies),
         *_on_lift(model),
         *_on_baked(frame),
         *_on_curves(frame),

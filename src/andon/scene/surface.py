@@ -29,7 +29,7 @@ def _drop_nan(values: tuple[float, ...]) -> tuple[float, ...]:
 
 
 class Depth(Table):
-    """A depth image. Holes stay holes: they are counted, never filled."""
+    """A depth image. Holes stay holes, and are counted, unless `fill_px` says otherwise."""
 
     file: Reference = Field(description="The depth image.")
     kind: Literal["z", "distance", "disparity"] = Field(
@@ -71,6 +71,12 @@ class Depth(Table):
     thickness_m: Positive | None = Field(
         default=None,
         description="Closes objects at their back for shadows, metres; default: open.",
+    )
+    fill_px: Annotated[int, Field(ge=0, le=256)] = Field(
+        default=0,
+        description="Gaps of up to so many pixels across are closed: holes get the depth of "
+        "their farther rim, are lit, and are counted; for shadows, a surface goes on behind narrow "
+        "things before it. 0: holes stay holes, and light passes where nothing was measured.",
     )
 
     @model_validator(mode="after")

@@ -95,7 +95,9 @@ def surface_error(surface: str, /) -> float:
         linear = linear + generator.normal(0, 0.003, linear.shape)
         linear[:6, :8] += 0.3 * (lux == 250)  # something bright walks through
         photographs.append(
-            KnownLight(f"{lux} lx", linear.astype(np.float32), linear > 0.98, np.full(3, float(lux)))
+            KnownLight(
+                f"{lux} lx", linear.astype(np.float32), linear > 0.98, np.full(3, float(lux))
+            )
         )
     lux = np.linspace(LEVELS_LUX[0], LEVELS_LUX[-1], 200)
     found = fit_surface(photographs).curve.linear_of(np.repeat(lux[:, None], 3, axis=1))

@@ -53,6 +53,7 @@ IN_ORDER = (
     "area_scene",
     "penumbra",
     "synthetic",
+    "confidence",
     "photographs",
     "lampshade",
     "photometry",

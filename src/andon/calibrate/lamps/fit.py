@@ -13,14 +13,16 @@ from andon.calibrate.lamps.asked import (
     check_photograph,
     chosen_lamps,
     free_amounts,
+    ridge_of,
     terms_of,
     view_name,
 )
 from andon.calibrate.lamps.cells import Cells, cells_of
-from andon.calibrate.lamps.families import FAMILY, decoded_frame, response_errors
+from andon.calibrate.lamps.families import best_response, decoded_frame, response_errors
 from andon.calibrate.lamps.model import FitSettings, LampFit
 from andon.calibrate.lamps.notes import notes_of
 from andon.calibrate.lamps.regions import errors_by_region
+from andon.calibrate.lamps.shades import white_of_shades
 from andon.calibrate.lamps.solve import Problem, Solution, solve
 from andon.calibrate.lamps.tables import check_lamps, fitted_scene
 from andon.calibrate.lamps.target import mask_of, target_of
@@ -31,7 +33,7 @@ from andon.engines.reading import read_pictures, view_of
 from andon.errors import InputError
 from andon.lamps import GoniometricLamp
 from andon.pipeline import Frame
-from andon.quantities import photometric
+from andon.quantities import CameraFrame, photometric
 from andon.responses import Response
 from andon.scene import Scene
 from andon.spaces import View
@@ -116,6 +118,7 @@ class _Fit:
         self.mask = None if mask is None else mask_of(mask, self.view)
         self._check_response()
         self._drawn, self._progress = 0, progress
+        self.white_cd_m2: float | None = None
         self._pictures = 3 + len(self.terms) * (2 if settings.response else 1)
 
     def run(self) -> LampFit:
@@ -124,18 +127,29 @@ class _Fit:
         errors: Mapping[str, float] = {}
         chosen: Response | None = None
         if self.settings.response:
-            errors = response_errors(fitted.problem, self.cells, self.frame, self.target)
-            chosen = FAMILY[min(errors, key=lambda name: errors[name])]
+            kept = fitted.solution.kept
+            errors = response_errors(fitted.problem, kept, self.cells, self.frame, self.target)
+            chosen = best_response(errors, self.frame.response)
             if chosen != self.frame.response:
                 self._decode(chosen)
                 fitted = self._fitted()
-        return self._result(fitted, errors, chosen)
+        return self._result(self._with_white(fitted), errors, chosen)
+
+    def _with_white(self, fitted: _Fitted) -> _Fitted:
+        """The same in front of the white that lit shades tell, where the scene states none."""
+        capture = None if self.scene is None else self.scene.capture
+        if capture is None or capture.luminance_per_unit:
+            return fitted
+        self.white_cd_m2 = white_of_shades(fitted.frame, self.target.linear, self.target.seen)
+        if self.white_cd_m2 is None:
+            return fitted
+        self._reframe(replace(self.frame, luminance_per_unit=self.white_cd_m2))
+        painter = self._painter()
+        terms, amounts = fitted.basis.terms, fitted.solution.amounts
+        return replace(fitted, frame=painter.frame(terms, amounts, "with the white of shades"))
 
     def _fitted(self) -> _Fitted:
-        settings = self.settings
-        painter = Painter(
-            self.prepared, settings.engine, settings.time_seconds, settings.view, self._step
-        )
+        painter = self._painter()
         none = np.zeros((len(self.terms), 3))
         dark = painter.frame(self.terms, none, "without lamps")
         self.cells = self._cells(painter.frame(self.terms, none + 1, "with all lamps"))
@@ -151,6 +165,12 @@ class _Fit:
             if off < LINEAR_WITHIN or step == MOST_STEPS:
                 return _Fitted(basis, problem, solution, frame)
             basis = painter.around(basis, solution.amounts, drawn, self.cells)
+
+    def _painter(self) -> Painter:
+        settings = self.settings
+        return Painter(
+            self.prepared, settings.engine, settings.time_seconds, settings.view, self._step
+        )
 
     def _step(self, what: str) -> None:
         self._drawn += 1
@@ -194,11 +214,14 @@ class _Fit:
             cells.is_white,
             tiles,
             free_amounts(basis.terms, self.settings),
+            ridge_of(basis.terms),
         )
 
     def _decode(self, response: Response) -> None:
         self.target = self.target.decoded(self.frame.response, response)
-        frame = decoded_frame(self.frame, response)
+        self._reframe(decoded_frame(self.frame, response))
+
+    def _reframe(self, frame: CameraFrame) -> None:
         name = frame.view.name
         self.prepared = replace(self.prepared, frames={**self.prepared.frames, name: frame})
         self.frame = frame
@@ -256,6 +279,7 @@ class _Fit:
             scene=self._fitted_scene(values, chosen),
             photometry=self.prepared.photometry,
             notes=(),
+            luminance_per_unit=self.white_cd_m2,
         )
         return replace(fit, notes=notes_of(fit))
 
@@ -275,6 +299,7 @@ class _Fit:
             fill_lux=None if fill is None else (fill.sky_lux, fill.ground_lux),
             dimming=None if values.dimming is None else values.dimming.factor,
             response=chosen,
+            luminance_per_unit=self.white_cd_m2,
         )
 
 

@@ -35,6 +35,7 @@ def fit_report(fit: LampFit, /) -> dict[str, Any]:
                 "correlation": fit.motion.correlation,
                 "moved_back": not fit.motion.is_still,
             },
+            "luminance_per_unit_cd_m2": fit.luminance_per_unit,
             "rejected_share": fit.rejected_share,
             "hole_pixels": int(fit.holes.sum()),
             "errors": {

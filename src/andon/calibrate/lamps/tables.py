@@ -137,10 +137,11 @@ def fitted_scene(
     fill_lux: tuple[Float, Float] | None,
     dimming: Float | None,
     response: Response | None,
+    luminance_per_unit: float | None = None,
 ) -> Scene:
     """`scene` with the fitted values in its tables.
 
-    `stated` are the peaks of luminaires whose tables state none; `response` None leaves it.
+    `stated` are the peaks of luminaires whose tables state none; None leaves what stands there.
     """
     lamps: list[Any] = [
         fitted_lamp(table, factors[table.name], stated.get(table.name))
@@ -155,8 +156,10 @@ def fitted_scene(
         own = np.broadcast_to(np.asarray(scene.ambient.dimming, float), 3) * dimming
         left = tuple(float(share) for share in own)
         changes["ambient"] = scene.ambient.model_copy(update={"dimming": left})
-    if response is not None and scene.capture is not None:
-        changes["capture"] = scene.capture.model_copy(update={"response": _table_of(response)})
+    capture: dict[str, Any] = {} if response is None else {"response": _table_of(response)}
+    capture |= {} if luminance_per_unit is None else {"luminance_per_unit": luminance_per_unit}
+    if capture and scene.capture is not None:
+        changes["capture"] = scene.capture.model_copy(update=capture)
     return scene.model_copy(update=changes)
 
 

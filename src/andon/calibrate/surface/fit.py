@@ -149,7 +149,11 @@ def _knots(samples: Samples, name: str) -> Float:
     if len(starts) <= KNOTS and _are_levels(lux, starts):
         return np.array([float(part.mean()) for part in np.split(lux, starts[1:])])
     wanted = np.linspace(np.sqrt(low), np.sqrt(high), KNOTS) ** 2
-    inside = [e for e in wanted[1:-1] if LEAST_VALUES <= np.searchsorted(lux, e) <= len(lux) - LEAST_VALUES]
+    inside = [
+        e
+        for e in wanted[1:-1]
+        if LEAST_VALUES <= np.searchsorted(lux, e) <= len(lux) - LEAST_VALUES
+    ]
     return _with_values(lux, np.array([low, *inside, high]))
 
 

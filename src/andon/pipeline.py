@@ -168,26 +168,21 @@ class Renderer:
         handles = self.draw(time_seconds, view, timed=True)
         engine, moment = self._engine, self._moment
         drawn = engine.read(*handles)
-        surface, illuminance = drawn[:2]
         frame = self.prepared.frames[self._view_name(view)]
         layered = engine.read_glass(frame, handles[0], moment)
-        baked = engine.read_baked(surface, moment)
-        bodies, filtered = engine.read_bodies(frame, handles[0], moment)
-        report = report_of(
-            self.prepared, engine, moment, frame, surface, illuminance, layered, baked
-        )
+        baked = engine.read_baked(drawn[0], moment)
+        report = report_of(self.prepared, engine, moment, frame, *drawn[:2], layered, baked)
         return Frame(
             self.prepared.captured(frame.view.name),
             *drawn,
-            report=replace(report, stage_seconds=self.stage_seconds),
-            bodies=bodies,
-            glow=filtered,
-            glare=engine.read_glare(frame),
-            seen=engine.read_seen(frame, *handles[2:]),
-            glass=layered,
-            highlights=engine.read_highlights(frame),
-            baked=baked,
-            prepared=self.prepared,
+            replace(report, stage_seconds=self.stage_seconds),
+            *engine.read_bodies(frame, handles[0], moment),
+            engine.read_glare(frame),
+            engine.read_seen(frame, *handles[2:]),
+            layered,
+            engine.read_highlights(frame),
+            baked,
+            self.prepared,
         )
 
     def picture(self, time_seconds: float = 0.0, view: str | None = None) -> NDArray[np.uint8]:

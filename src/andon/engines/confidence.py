@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from andon.capture.noise import noise_codes
 from andon.composite.confidence import Cause, Confidence, confidence_of
+from andon.composite.curves import beyond_curves
 from andon.composite.reference import relit_linear
 from andon.display.reference import shown_codes
-from andon.engines.measured import beyond_curves_of
 from andon.errors import InputError
 
 if TYPE_CHECKING:
@@ -54,8 +54,8 @@ def confidence_of_frame(frame: Frame, /, sigma: Float | None = None) -> Confiden
     def shown(light: Float) -> Float:
         return shown_codes((light + spread) * white, tone, captured.response, white)
 
-    causes = _causes(frame, lux, beyond_curves_of(prepared, captured, lux))
     sigma = noise_codes(captured) if sigma is None else sigma
+    causes = _causes(frame, lux, beyond_curves(linear, new, measured))
     return confidence_of(captured, relit, shown, causes, sigma)
 
 

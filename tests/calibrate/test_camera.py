@@ -41,7 +41,7 @@ def test_a_known_camera_comes_back_and_only_its_noise_is_left(series, calibratio
     assert NOISE < calibration.residuals.rms_codes < 1.6 * NOISE
     assert calibration.residuals.photograph_codes.shape == (7,)
     assert np.abs(calibration.exposure_error_ev).max() < 0.01
-    assert calibration.kept_share > 0.95
+    assert calibration.kept_share > 0.9
     check_calibration(series, calibration)
 
 
@@ -108,9 +108,9 @@ def test_a_camera_without_a_rising_response_is_refused(backwards):
     for channel in found.recovery.channels:
         assert channel.fall is not None
         assert 115 <= channel.fall.codes[0] < channel.fall.codes[1] <= 205
-        assert channel.fall.ev > 0.5
+        assert channel.fall.ev > 8 * channel.fall.noise_ev
         assert (np.diff(channel.rising) >= 0).all()
-    with pytest.raises(InputError, match="response falls by|contradict each other by"):
+    with pytest.raises(InputError, match=r"response falls by|contradict each other by"):
         check_calibration(backwards, found)
 
 
@@ -136,7 +136,7 @@ def test_what_moved_and_what_is_clipped_does_not_bend_the_curve(calibration):
     found = calibrate_camera(bracket_of(NAMES, codes, SEVEN))
     wanted = calibration.recovery.curves[20:236]
     assert np.abs(found.recovery.curves[20:236] - wanted).max() < 0.06
-    assert found.kept_share < 0.97
+    assert found.kept_share < calibration.kept_share
 
 
 def test_a_camera_that_moved_is_refused_with_how_far():

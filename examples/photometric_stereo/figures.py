@@ -4,7 +4,7 @@ python examples/photometric_stereo/figures.py -o OUT
 
 Needs ``ANDON_DATA``, the folder that holds psm_uw; takes about two minutes. Writes for both things
 ``NAME-pairs.png`` (dB over the best global gain), ``NAME-examples.png``, and ``pairs.csv``; with
-``--scenes`` instead ``NAME/NAME-I-J.toml`` for every pair, for ``andon relight``.
+``--scenes`` instead ``NAME/NAME-I-J.toml`` for every pair, for ``andon relight --scene``.
 """
 
 from __future__ import annotations

@@ -280,3 +280,13 @@ def test_a_lamp_that_shines_nowhere_is_refused():
 def test_settings_that_do_not_fit_are_refused(settings, words):
     with pytest.raises(InputError, match=words):
         fit(room(), codes_of(texture()), **settings)
+
+
+def test_where_e0_is_even_a_fill_from_all_sides_is_called_dimming():
+    prepared, reference = photographed(TRUTH, exposure=0.7)
+    found = fit(prepared, reference, dimming="one", bounce=True)
+    assert found.dimming.factor == pytest.approx(np.full(3, 0.7), rel=0.02)
+    assert found.fill.share < 0.01
+    assert not found.dimming.told_apart
+    assert any("no pixel tells dimming from bounce" in line for line in found.notes)
+    assert_factors(found, TRUTH, 0.7)

@@ -55,7 +55,7 @@ def problem(*, count=600, seed=5, noise=0.0):
         free[index // 3, index % 3, index] = 1
     stated = Problem(
         pictures, photograph, wanted, photograph, np.ones((count, 3)), np.zeros(count, bool),
-        np.arange(count) % 50, free,
+        np.arange(count) % 50, free, np.full(2, 1e-9),
     )  # fmt: skip
     return stated, truth
 

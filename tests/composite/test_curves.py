@@ -134,6 +134,7 @@ def test_pixels_beyond_what_was_measured_are_told():
     captured, relit = ZEROS + SHAPE[2], ZEROS + SHAPE[3]
     captured[0, 0], relit[1, 1] = SHAPE[0] - 1e-3, [0.2, SHAPE[-1, 1] + 1e-3, 0.2]
     captured[2, 2] = SHAPE[-1] * (1 + 1e-6)  # float32
+    captured[3, 3] = relit[3, 3] = 2 * SHAPE[-1]  # not changed
     measured = everywhere(CURVE)
     assert np.argwhere(beyond_curves(captured, relit, measured)).tolist() == [[0, 0], [1, 1]]
     measured.curve_of[0, 0] = -1

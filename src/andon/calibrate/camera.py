@@ -134,6 +134,15 @@ def check_calibration(bracket: Bracket, calibration: CameraCalibration, /) -> No
     Contradictions: a curve that falls beyond noise, a photograph whose exposure is off by a stop
     and more, a residual that no curve of a camera leaves.
     """
+    _check_times(bracket, calibration.exposure_error_ev)
+    rms = calibration.residuals.rms_codes
+    if rms > MOST_RMS_CODES:
+        raise InputError(
+            f"the photographs contradict each other by {rms:.0f} codes of 255 (RMS): no response "
+            "explains them",
+            field="PHOTOS",
+            remedy="a still scene from one place, or --align auto for a camera that moved",
+        )
     for name, channel in zip(CHANNELS, calibration.recovery.channels, strict=True):
         fall = channel.fall
         if fall is not None and fall.ev > max(FALL_ERRORS * fall.noise_ev, LEAST_FALL_EV):
@@ -144,15 +153,6 @@ def check_calibration(bracket: Bracket, calibration: CameraCalibration, /) -> No
                 field="PHOTOS",
                 remedy="photographs of one light, each developed alike, without local tone mapping",
             )
-    _check_times(bracket, calibration.exposure_error_ev)
-    rms = calibration.residuals.rms_codes
-    if rms > MOST_RMS_CODES:
-        raise InputError(
-            f"the photographs contradict each other by {rms:.0f} codes of 255 (RMS): no response "
-            "explains them",
-            field="PHOTOS",
-            remedy="a still scene from one place, or --align auto for a camera that moved",
-        )
 
 
 def _check_times(bracket: Bracket, errors: Float) -> None:
@@ -182,10 +182,10 @@ def _exposure_errors(bracket: Bracket) -> Float:
         fitted = replace(bracket, seconds=2 ** (logs + errors))
         curves = recover_curves(fitted).curves
         bias = residuals_of(fitted, curves, pixels=ROUND_PIXELS).exposure_ev
-        step = np.nan_to_num(bias)
-        errors = errors + step
-        errors = errors - np.polyval(np.polyfit(logs, errors, 1), logs)
-        if np.abs(step).max() < SETTLED_EV:
+        found = errors + np.nan_to_num(bias)
+        found = found - np.polyval(np.polyfit(logs, found, 1), logs)
+        step, errors = np.abs(found - errors).max(), found
+        if step < SETTLED_EV:
             break
     known = np.isfinite(bias)
     errors = np.where(known, errors - _line_of_most(logs[known], errors[known])(logs), np.nan)

@@ -89,14 +89,15 @@ def _within(values: Float, low: float, high: float) -> Float:
 
 def _residuals(calibration: CameraCalibration) -> Panel:
     residuals = calibration.residuals
-    reach = float(max(10.0, np.ceil(4 * residuals.rms_codes / 10) * 10))
+    bands = [_bands(calibration, c) for c in range(3)]
+    most = max(float(np.nanmax(rms, initial=0.0)) for _, rms in bands)
+    reach = float(max(10.0, np.ceil(most / 10) * 10))
     points: list[Points] = []
     lines = [Curve("", INK, np.array([0.0, 255.0]), np.zeros(2), 1.0)]
     for c, name in enumerate(CHANNELS):
         _, code, left = _chosen(calibration, c)
         points.append(Points("", PALE[c], code - left, _within(left, -reach, reach)))
-        middle, rms = _bands(calibration, c)
-        lines.append(Curve(f"{name}: RMS", COLOURS[c], middle, rms, 2.0))
+        lines.append(Curve(f"{name}: RMS", COLOURS[c], *bands[c], 2.0))
     return Panel(
         f"What is left: {residuals.rms_codes:.1f} codes RMS, {residuals.median_codes:.1f} in the "
         f"median, {residuals.rms_ev:.2f} EV RMS",
@@ -118,8 +119,8 @@ def _bands(calibration: CameraCalibration, channel: int) -> tuple[Float, Float]:
     band = (predicted[known] // BAND_CODES).astype(int)
     count = np.bincount(band, minlength=256 // BAND_CODES)
     squares = np.bincount(band, left**2, 256 // BAND_CODES)
-    rms = np.sqrt(squares / np.maximum(count, 1))
-    middle = (np.arange(len(rms)) + 0.5) * BAND_CODES
+    rms: Float = np.sqrt(squares / np.maximum(count, 1))
+    middle = (np.arange(len(rms), dtype=np.float64) + 0.5) * BAND_CODES
     return middle, np.where(count >= 20, rms, np.nan)
 
 

@@ -194,8 +194,10 @@ def _signed(value: float) -> str:
 def _on_exposures(bracket: Bracket, errors: Any) -> list[str]:
     if len(bracket.names) < 3:
         return ["two photographs cannot tell whether their times are true: take a third"]
+    doubt = "; of three photographs it may be another one's time" if len(errors) == 3 else ""
     return [
         f"{Path(name).name} is exposed {error:+.2f} EV against what is stated, by what it shows"
+        f"{doubt}"
         for name, error in zip(bracket.names, errors, strict=True)
         if abs(error) > NOTED_EV
     ]

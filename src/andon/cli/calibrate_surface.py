@@ -83,11 +83,13 @@ def run(options: SurfaceOptions) -> None:
     named = dict(_named(word) for word in options.masks)
     if len(named) < len(options.masks):
         raise InputError("names a surface twice", field="--mask")
-    photographs, inputs = read_known_light(options.photographs, options.response)
+    typed = read_known_light(options.photographs, options.response)
     masks = read_masks(named) or {WHOLE: None}
-    _check_out(options.out, [*inputs, *named.values()], list(masks))
-    fits = [fit_surface(photographs, mask, name=name) for name, mask in masks.items()]
+    _check_out(options.out, [*typed.inputs, *named.values()], list(masks))
+    fits = [fit_surface(typed.photographs, mask, name=name) for name, mask in masks.items()]
     _write(options.out, fits, named)
+    for line in typed.assumed:
+        note(line)
     _print(fits)
     print(options.out)
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.cli.console import note
 from andon.errors import InputError
 from andon.responses import LINEAR, SRGB, Response
 
@@ -17,18 +17,26 @@ if TYPE_CHECKING:
     from andon.calibrate.surface import KnownLight
     from andon.files.pictures import Picture
 
-__all__ = ["read_known_light", "read_masks"]
+__all__ = ["ReadLight", "read_known_light", "read_masks"]
 
 Float = NDArray[np.float64]
 
 FIELD = "PHOTO=LUX"
+SRGB_ASSUMED = "{} is taken for sRGB; --response states another camera"
 EXAMPLE = "e.g. dim.png=55 full.png=640, or room.png=room_lux.exr"
 
 
-def read_known_light(
-    words: Sequence[str], response: str | None
-) -> tuple[list[KnownLight], list[Path]]:
-    """The photographs in linear light, and every file that was read. Raises `InputError`."""
+@dataclass(frozen=True)
+class ReadLight:
+    """The photographs in linear light, every file that was read, and what is taken for granted."""
+
+    photographs: list[KnownLight]
+    inputs: list[Path]
+    assumed: list[str]
+
+
+def read_known_light(words: Sequence[str], response: str | None) -> ReadLight:
+    """What was typed, read. Raises `InputError`."""
     from andon.calibrate.surface import KnownLight
     from andon.capture.still import CLIPPED_CODES, linear_from_picture
     from andon.files.pictures import read_picture
@@ -46,9 +54,10 @@ def read_known_light(
             clipped = picture.values >= np.iinfo(picture.values.dtype).max - CLIPPED_CODES
         linear = linear_from_picture(picture, _of(picture, stated, photo))
         found.append(KnownLight(str(photo), linear, clipped, _illuminance(lux)))
-    if encoded and stated is None:
-        note(f"{encoded[0]} is taken for sRGB; --response states another camera")
-    return found, [*inputs, *([Path(response)] if response and response.endswith(".csv") else [])]
+    if response and response.endswith(".csv"):
+        inputs.append(Path(response))
+    is_assumed = stated is None and bool(encoded)
+    return ReadLight(found, inputs, [SRGB_ASSUMED.format(encoded[0])] if is_assumed else [])
 
 
 def _split(word: str) -> tuple[Path, str]:

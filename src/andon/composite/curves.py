@@ -29,6 +29,8 @@ Mask = NDArray[np.bool_]
 
 # Of the ends of a curve: what was captured in codes and lit in float32 meets them inexactly.
 ROUNDING = 1e-4
+# Of a value: f of f⁻¹ of it differs by this much at most.
+UNCHANGED = 1e-6
 
 
 def light_of(linear: Float, measured: MeasuredSurface | None, /) -> Float:
@@ -63,7 +65,8 @@ def beyond_curves(
     captured: Float, relit: Float, measured: MeasuredSurface | None, /
 ) -> Mask | None:
     """(H, W) pixels whose curve was not measured as far: a channel of what was captured, or of the
-    relit picture, both linear (H, W, 3), lies outside it. None without curves.
+    relit picture, both linear (H, W, 3), lies outside it. What was not changed needs no curve.
+    None without curves.
     """
     if measured is None or not measured.curves:
         return None
@@ -73,7 +76,7 @@ def beyond_curves(
         slack = ROUNDING * (high - low)
         for linear in (captured[own], relit[own]):
             beyond[own] |= ((linear < low - slack) | (linear > high + slack)).any(axis=-1)
-    return beyond
+    return beyond & ~np.isclose(captured, relit, rtol=UNCHANGED, atol=0).all(axis=-1)
 
 
 def _pixels(measured: MeasuredSurface | None) -> Iterator[tuple[SurfaceCurve, Mask]]:

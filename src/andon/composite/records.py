@@ -27,7 +27,7 @@ DISC_RECORD = HostStruct(
     "DiscRecord",
     (
         ("direction", "vec3f"),  # from the camera, unit, world
-        ("distance_m", "f32"),
+        ("distance_m", "f32"),  # what is nearer hides it
         ("linear", "vec3f"),  # luminance in units of the picture
         ("radius_radians", "f32"),
     ),

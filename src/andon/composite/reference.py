@@ -115,11 +115,15 @@ def lamp_luminance(lamp: PointLamp, eye: Float, /) -> Float:
 
 @dataclass(frozen=True)
 class Disc:
-    """A lamp as it is drawn: `position_m` (3,), `radius_m`, and `luminance_cd_m2` (3,)."""
+    """A lamp as it is drawn: `position_m` (3,), `radius_m`, and `luminance_cd_m2` (3,).
+
+    What is nearer to its middle than `glass_m` does not hide it.
+    """
 
     position_m: Float
     radius_m: float
     luminance_cd_m2: Float
+    glass_m: float = 0.0
 
 
 def disc_of(lamp: Lamp, eye: Float, /) -> Disc | None:
@@ -128,10 +132,11 @@ def disc_of(lamp: Lamp, eye: Float, /) -> Disc | None:
     Lamps with an area are drawn as the bodies that they are; a ball without one as a disc.
     """
     if isinstance(lamp, SphereLamp) and lamp.drawn and not lamp.body:
-        return Disc(lamp.position_m, lamp.radius_m, lamp.luminance_cd_m2)
+        return Disc(lamp.position_m, lamp.radius_m, lamp.luminance_cd_m2, lamp.glass_m)
     if not isinstance(lamp, PointLamp) or lamp.visible_radius_m <= 0:
         return None
-    return Disc(lamp.position_m, lamp.visible_radius_m, lamp_luminance(lamp, eye))
+    luminance = lamp_luminance(lamp, eye)
+    return Disc(lamp.position_m, lamp.visible_radius_m, luminance, lamp.glass_m)
 
 
 def drawn_lamps(lamps: Sequence[Lamp], eye: Float, /) -> list[Disc]:
@@ -160,7 +165,9 @@ def draw_lamps(luminance: Float, surface: Surface, lamps: Sequence[Lamp], /) -> 
         away = float(np.linalg.norm(reach))
         radius = np.arcsin(min(1.0, disc.radius_m / away))
         angle = _angle_between(directions, reach / away)
-        cover = np.clip((radius - angle) / pixel_angle + 0.5, 0, 1) * (away < distance)
+        cover = np.clip((radius - angle) / pixel_angle + 0.5, 0, 1) * (
+            away - disc.glass_m < distance
+        )
         luminance = luminance + cover[..., None] * (disc.luminance_cd_m2 - luminance)
     return luminance
 

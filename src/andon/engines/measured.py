@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.composite.curves import beyond_curves
 from andon.composite.model import Ambient, MeasuredSurface
 from andon.composite.per_lux import map_scale
+from andon.composite.reference import relit_linear
 from andon.engines.measured_curves import curves_of, one_view
 from andon.errors import InputError
 from andon.files.pictures import read_picture
@@ -20,9 +23,19 @@ from andon.scene import Scene
 from andon.spaces import View
 from andon.surface.model import SurfaceModel
 
-__all__ = ["checked_reflectance", "measured_of", "refuse_without_photograph"]
+if TYPE_CHECKING:
+    from andon.engines.prepared import Prepared
+
+__all__ = [
+    "beyond_curves_of",
+    "checked_reflectance",
+    "curved_pixels",
+    "measured_of",
+    "refuse_without_photograph",
+]
 
 Float = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 # Beyond these ρ and photograph differ by more than an exposure that was guessed.
 LIKELY_SCALES = (0.2, 5.0)
@@ -92,6 +105,28 @@ def _on_scale(scale: Float) -> tuple[str, ...]:
         f"where E0 is strong the photograph shows {times} times surface.reflectance_map (R, G, B): "
         "the map was scaled so; check capture.luminance_per_unit and E0",
     )
+
+
+def curved_pixels(measured: MeasuredSurface | None, /) -> Mask:
+    """(H, W) pixels that have a curve."""
+    if measured is None or measured.curve_of is None:
+        return np.zeros((), bool)
+    return measured.curve_of >= 0
+
+
+def beyond_curves_of(
+    prepared: Prepared, captured: CameraFrame, added_lux: NDArray[Any], /
+) -> Mask | None:
+    """(H, W) pixels that are darker or brighter than their curve was measured; None without curves.
+
+    `added_lux` (H, W, 3) is ΔE.
+    """
+    measured = prepared.measured.get(captured.view.name)
+    linear, lux = np.asarray(captured.linear, np.float64), np.asarray(added_lux, np.float64)
+    if measured is None or measured.curve_of is None:
+        return None
+    relit = relit_linear(captured, prepared.ambient, lux, measured)
+    return beyond_curves(linear, relit, measured)
 
 
 def refuse_without_photograph(scene: Scene, /) -> None:

@@ -83,8 +83,6 @@ def _by_material(scene: Scene, real: Geometry) -> dict[str, int]:
         if table.mask is not None:
             continue
         field, name = f"surface.response[{index}].material", table.material
-        if name in found:
-            raise InputError(f"{name!r} has two curves", file=scene.file, field=field)
         if name != OTHERS and name not in names:
             raise _no_such_material(scene, field, name, names)
         found[name] = index

@@ -61,7 +61,11 @@ class RealShells:
         for names in self.parts:
             if lamp.owner in names or REAL in shadow.through:
                 passed.add(_group(names))
-        return replace(lamp, shadow=replace(shadow, through=shadow.through | passed))
+        lit = replace(lamp, shadow=replace(shadow, through=shadow.through | passed))
+        radius_m = getattr(lamp, "visible_radius_m", getattr(lamp, "radius_m", 0.0))
+        if lamp.owner not in self.names or not hasattr(lamp, "glass_m"):
+            return lit
+        return replace(lit, glass_m=radius_m + self.margins_m[lamp.owner])
 
 
 def _group(names: frozenset[str]) -> str:

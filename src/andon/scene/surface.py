@@ -74,9 +74,9 @@ class Depth(Table):
     )
     fill_px: Annotated[int, Field(ge=0, le=256)] = Field(
         default=0,
-        description="Gaps of up to so many pixels across are closed: holes get the depth of their "
-        "farther rim, are lit, and are counted; for shadows, a surface goes on behind narrow things "
-        "that stand before it. 0: holes stay holes, and light passes where nothing was measured.",
+        description="Gaps of up to so many pixels across are closed: holes get the depth of "
+        "their farther rim, are lit, and are counted; for shadows, a surface goes on behind narrow "
+        "things before it. 0: holes stay holes, and light passes where nothing was measured.",
     )
 
     @model_validator(mode="after")
@@ -208,10 +208,11 @@ class Surface(Table):
                 "reflectance and reflectance_map exclude each other", key="reflectance_map"
             )
         seen: set[str] = set()
-        for index, material in enumerate(entry.material for entry in self.response):
-            if material in seen:
+        for index, entry in enumerate(self.response):
+            if entry.mask is None and entry.material in seen:
                 raise refusal(
-                    f"{material!r} has a response already", key=f"response[{index}].material"
+                    f"{entry.material!r} has a response already", key=f"response[{index}].material"
                 )
-            seen.add(material)
+            if entry.mask is None:
+                seen.add(entry.material)
         return self

@@ -2,11 +2,12 @@
 
 Two sorts of gaps let light through that nothing let through in the room::
 
-    ───────┐  ┌────      holes: rims of things, dark and shiny ones, where nothing was measured. Their
-     wall  │▒▒│ wall     surface goes on from the farther rim, in 1/z, which is linear over a plane.
-           └──┘
-    ═══════   ═════      what a thing hides: the table behind the stem of a lamp has no triangles, and
-     table  ▐▌ table     the lamp over it shines on the floor. For shadows the table goes on there.
+    ───────┐  ┌────     holes: rims of things, dark and shiny ones, where nothing was measured.
+     wall  │▒▒│ wall    Their surface goes on from the farther rim, in 1/z, which is linear
+           └──┘         over a plane.
+    ═══════   ═════     what a thing hides: the table behind the stem of a lamp has no
+     table  ▐▌ table    triangles, and the lamp over it shines on the floor. For shadows the
+                        table goes on there.
 
 Both are guesses, along rows or columns, whichever gap is narrower, and only as wide as is stated.
 """
@@ -55,20 +56,21 @@ def _along_rows(inverse: Float, max_jump: float) -> tuple[Float, Int]:
     Rims of one surface are joined by a line; else the farther one goes on.
     """
     height, width = inverse.shape
-    column = np.broadcast_to(np.arange(width), inverse.shape)
+    row, column = np.indices(inverse.shape)
     known = np.isfinite(inverse)
     left = np.maximum.accumulate(np.where(known, column, -1), axis=1)
     right = np.minimum.accumulate(np.where(known, column, width)[:, ::-1], axis=1)[:, ::-1]
     closed = (left >= 0) & (right < width)
     start, end = np.clip(left, 0, None), np.clip(right, None, width - 1)
-    row = np.arange(height)[:, None]
-    first, last = inverse[row, start], inverse[row, end]
+    first: Float = inverse[row, start]
+    last: Float = inverse[row, end]
     with np.errstate(invalid="ignore"):
         joined = np.maximum(first, last) <= (1 + max_jump) * np.minimum(first, last)
         share = (column - start) / np.maximum(end - start, 1)
         line = first + share * (last - first)
         on_left = first + (column - start) * _slopes(inverse, max_jump)[row, start]
-        on_right = last - (end - column) * -_slopes(inverse[:, ::-1], max_jump)[:, ::-1][row, end]
+        back = _slopes(inverse[:, ::-1], max_jump)[:, ::-1]
+        on_right = last + (end - column) * back[row, end]
         value = np.where(joined, line, np.where(first < last, on_left, on_right))
     gap = np.where(closed, right - left - 1, width + height)
     return np.where(closed, value, np.nan), gap
@@ -107,4 +109,4 @@ def _closed(values: Float, width: int) -> Float:
 def _touched(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """(H, W) pixels that are in `mask`, or one of whose eight neighbours is."""
     padded = np.pad(mask, 1)
-    return sliding_window_view(padded, (3, 3)).any(axis=(2, 3))
+    return np.logical_or.reduce(sliding_window_view(padded, (3, 3)), axis=(2, 3))

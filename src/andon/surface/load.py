@@ -191,8 +191,8 @@ def surface_of_depth(
         return model
     guessed = ~measured & np.isfinite(depth)
     note = (
-        f"{guessed.sum()} of {(~measured).sum()} hole pixels have the depth of what is beside them: "
-        f"surface.depth.fill_px = {fill_px}"
+        f"{guessed.sum()} of {(~measured).sum()} hole pixels have the depth of what is beside "
+        f"them: surface.depth.fill_px = {fill_px}"
     )
     return replace(model, filled={name: guessed}, notes=(note,))
 

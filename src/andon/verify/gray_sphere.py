@@ -28,9 +28,9 @@ def ball_normals(mask: NDArray[np.bool_], /) -> Float:
     and area.
     """
     rows, columns = np.nonzero(mask)
-    radius = np.sqrt(len(rows) / np.pi)
-    x = (np.arange(mask.shape[1]) - columns.mean()) / radius
-    y = (rows.mean() - np.arange(mask.shape[0])[:, None]) / radius
+    radius, middle = (len(rows) / np.pi) ** 0.5, (float(rows.mean()), float(columns.mean()))
+    x = (np.arange(mask.shape[1], dtype=np.float64) - middle[1]) / radius
+    y = (middle[0] - np.arange(mask.shape[0], dtype=np.float64)[:, None]) / radius
     away = np.broadcast_to(np.hypot(x, y), mask.shape)
     inside = mask & (away < RIM)
     z = np.sqrt(np.maximum(1 - away**2, 0))
@@ -64,5 +64,6 @@ def offset_line() -> tuple[float, float]:
     curve = gray_sphere().curve
     lit = curve.illuminance_lux >= LINE_FROM * curve.illuminance_lux[-1]
     lux, green = curve.illuminance_lux[lit], curve.linear[lit, 1]
-    line = np.poly1d(np.polyfit(lux, green, 1))
-    return float(np.abs(green - line(lux)).max() / green[-1]), float(line(0) / green[-1])
+    slope, start = np.asarray(np.polyfit(lux, green, 1), np.float64).tolist()
+    apart = np.abs(green - start - slope * lux)
+    return float(apart.max() / green[-1]), start / float(green[-1])

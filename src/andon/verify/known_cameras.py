@@ -52,16 +52,11 @@ def _calibrated(
     scene = 2.0 ** (STOPS * (hills - 0.5))[..., None] * [1.0, 0.8, 0.6]
     seconds = 2.0 ** (step_ev * (np.arange(count) - (count - 1) / 2))
     response = CAMERAS[camera]
-    codes = [
-        np.clip(
-            response.encode(np.clip(0.4 * scene * t, 0, 1)) * 255
-            + generator.normal(0, NOISE_CODES, scene.shape)
-            + 0.5,
-            0,
-            255,
-        ).astype(np.uint8)
-        for t in seconds
-    ]
+    codes: list[NDArray[np.uint8]] = []
+    for t in seconds.tolist():
+        clean = np.asarray(response.encode(np.clip(0.4 * scene * t, 0, 1)), np.float64) * 255
+        noise = np.asarray(generator.normal(0, NOISE_CODES, scene.shape), np.float64)
+        codes.append(np.clip(clean + noise + 0.5, 0, 255).astype(np.uint8))
     stated = seconds.copy()
     stated[WRONG] *= 2**WRONG_EV if is_wrong else 1
     return calibrate_camera(bracket_of([str(k) for k in range(count)], codes, stated.tolist()))
@@ -76,7 +71,7 @@ def response_error(camera: str, count: int, step_ev: float, /) -> float:
 
 
 def exposure_error_ev() -> float:
-    """Of a time stated `WRONG_EV` too long, and the right ones: the worst error of what is found."""
+    """The worst error of what is found, of a time stated `WRONG_EV` too long and of right ones."""
     found = _calibrated("pleasing", 7, 1.0, is_wrong=True).exposure_error_ev
     truth = np.where(np.arange(len(found)) == WRONG, -WRONG_EV, 0.0)
     return float(np.abs(found - truth).max())
@@ -95,7 +90,9 @@ def surface_error(surface: str, /) -> float:
         linear = linear + generator.normal(0, 0.003, linear.shape)
         linear[:6, :8] += 0.3 * (lux == 250)  # something bright walks through
         photographs.append(
-            KnownLight(f"{lux} lx", linear.astype(np.float32), linear > 0.98, np.full(3, float(lux)))
+            KnownLight(
+                f"{lux} lx", linear.astype(np.float32), linear > 0.98, np.full(3, float(lux))
+            )
         )
     lux = np.linspace(LEVELS_LUX[0], LEVELS_LUX[-1], 200)
     found = fit_surface(photographs).curve.linear_of(np.repeat(lux[:, None], 3, axis=1))

@@ -76,8 +76,8 @@ def photometric_stereo(
     """Fits normals and reflectance; then measures how strong each light was.
 
     Strengths are not fitted together with normals: that is exact for a matte thing, and takes for
-    a strength what a rough or glazed one does otherwise (in the rows `relight.photograph` it costs
-    3 dB on the sphere and 1 dB on the cat).
+    a strength what a rough or glazed one does otherwise. On the real photographs that
+    `relight.photograph` relights it cost 1.7 dB on the sphere and 0.8 dB on the cat.
 
     Parameters
     ----------

@@ -53,6 +53,8 @@ IN_ORDER = (
     "area_scene",
     "penumbra",
     "synthetic",
+    "confidence",
+    "lamp_on",
     "photographs",
     "lampshade",
     "photometry",

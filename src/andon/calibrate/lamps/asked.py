@@ -12,9 +12,20 @@ from andon.engines.prepared import Prepared
 from andon.errors import InputError
 from andon.scene import Scene
 
-__all__ = ["check_photograph", "chosen_lamps", "free_amounts", "terms_of", "view_name"]
+__all__ = [
+    "check_photograph",
+    "chosen_lamps",
+    "free_amounts",
+    "ridge_of",
+    "terms_of",
+    "view_name",
+]
 
 Float = NDArray[np.float64]
+
+# Of the diagonal of the normal equations. Lamps at one place share their light evenly; where E0 is
+# the same everywhere, light from all sides is dimming, which holes get as well.
+RIDGE, RIDGE_OF_FILL = 1e-9, 1e-5
 
 
 def free_amounts(terms: tuple[Term, ...], settings: FitSettings, /) -> Float:
@@ -27,6 +38,11 @@ def free_amounts(terms: tuple[Term, ...], settings: FitSettings, /) -> Float:
             column[index, channels] = 1
             columns.append(column)
     return np.stack(columns, axis=-1)
+
+
+def ridge_of(terms: tuple[Term, ...], /) -> Float:
+    """(J,) how much less than their pictures allow terms are given."""
+    return np.array([RIDGE_OF_FILL if term.kind in ("sky", "ground") else RIDGE for term in terms])
 
 
 def terms_of(

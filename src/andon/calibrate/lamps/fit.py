@@ -13,11 +13,12 @@ from andon.calibrate.lamps.asked import (
     check_photograph,
     chosen_lamps,
     free_amounts,
+    ridge_of,
     terms_of,
     view_name,
 )
 from andon.calibrate.lamps.cells import Cells, cells_of
-from andon.calibrate.lamps.families import FAMILY, decoded_frame, response_errors
+from andon.calibrate.lamps.families import best_response, decoded_frame, response_errors
 from andon.calibrate.lamps.model import FitSettings, LampFit
 from andon.calibrate.lamps.notes import notes_of
 from andon.calibrate.lamps.regions import errors_by_region
@@ -126,8 +127,9 @@ class _Fit:
         errors: Mapping[str, float] = {}
         chosen: Response | None = None
         if self.settings.response:
-            errors = response_errors(fitted.problem, self.cells, self.frame, self.target)
-            chosen = FAMILY[min(errors, key=lambda name: errors[name])]
+            kept = fitted.solution.kept
+            errors = response_errors(fitted.problem, kept, self.cells, self.frame, self.target)
+            chosen = best_response(errors, self.frame.response)
             if chosen != self.frame.response:
                 self._decode(chosen)
                 fitted = self._fitted()
@@ -212,6 +214,7 @@ class _Fit:
             cells.is_white,
             tiles,
             free_amounts(basis.terms, self.settings),
+            ridge_of(basis.terms),
         )
 
     def _decode(self, response: Response) -> None:

@@ -48,7 +48,7 @@ def _on_terms(fit: LampFit) -> list[str]:
     if alike:
         notes.append(
             f"no pixel tells {' from '.join(alike)}: only their sum is known, and how it is "
-            "shared out is arbitrary"
+            "shared out is arbitrary (between dimming and bounce: all to dimming)"
         )
     notes += [
         f"the lamp {light.name!r} got no light: the reference is no brighter where it shines"

@@ -7,6 +7,8 @@ which the photograph without the lamp does not tell, and the reference with it d
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -49,8 +51,12 @@ def white_of_shades(frame: Frame, wanted: Float, seen: NDArray[np.bool_], /) -> 
     def error(power: float) -> float:
         return float(((encoded(beside + np.exp(power) * own, response) - codes) ** 2).mean())
 
-    powers = np.linspace(-WIDEST, WIDEST, STEPS)
-    coarse = float(powers[np.argmin([error(power) for power in powers])])
-    step = powers[1] - powers[0]
-    finer = np.linspace(coarse - step, coarse + step, FINER_STEPS)
-    return white / float(np.exp(finer[np.argmin([error(power) for power in finer])]))
+    step = 2 * WIDEST / (STEPS - 1)
+    coarse = _least(error, 0.0, WIDEST, STEPS)
+    return white / float(np.exp(_least(error, coarse, step, FINER_STEPS)))
+
+
+def _least(error: Callable[[float], float], middle: float, reach: float, steps: int) -> float:
+    """Where `error` is least of so many steps around `middle`."""
+    powers: list[float] = np.linspace(middle - reach, middle + reach, steps).tolist()
+    return min(powers, key=error)

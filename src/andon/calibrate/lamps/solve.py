@@ -44,8 +44,8 @@ NORMAL_MEDIAN = 0.6745
 # Rounds with Huber's weights, which have one solution, before Tukey's, which start from it.
 HUBER_ROUNDS, MOST_ROUNDS, END = 12, 60, 1e-6
 GROUPS = 12
-# Of the diagonal of the normal equations: light that cannot be told apart is shared evenly.
-RIDGE = 1e-9
+# Keeps correlations of equal pictures invertible.
+LEAST_RIDGE = 1e-9
 # Least eigenvalue of the correlations of the terms' pictures, and the least part in its vector:
 # two pictures with a correlation of 0.9999 differ by 1.4 %, which no model of a room is good for.
 LEAST_EIGENVALUE, LEAST_PART = 1e-4, 0.25
@@ -65,6 +65,8 @@ class Problem:
     is_white : (n,) bool, the reference is at its white end.
     tiles : (n,) int, the square of the picture in which the cell lies.
     free : (J, 3, P), 1 where parameter p is the amount of term j in channel c.
+    ridge : (J,) of the diagonal of the normal equations; of terms that make the same picture the
+        one with the least gets it.
     """
 
     pictures: Float
@@ -75,6 +77,7 @@ class Problem:
     is_white: NDArray[np.bool_]
     tiles: NDArray[np.intp]
     free: Float
+    ridge: Float
 
     def predicted(self, amounts: Float, /) -> Float:
         """(n, 3) linear values of `amounts` (J, 3)."""
@@ -90,12 +93,14 @@ class Solution:
     amounts : (J, 3) ≥ 0.
     errors : (J, 3) standard errors; NaN where no cell tells anything.
     told_apart : (J,) bool.
-    rejected_share : of the cells with a number, those with a weight of nothing.
+    kept : (n, 3) bool, cells with a number that have any weight.
+    rejected_share : of the cells with a number, the others.
     """
 
     amounts: Float
     errors: Float
     told_apart: NDArray[np.bool_]
+    kept: NDArray[np.bool_]
     rejected_share: float
 
 
@@ -123,8 +128,9 @@ def solve(problem: Problem, /) -> Solution:
     weights = _weights(problem, light) * robust
     errors, told = _told(problem, weights, _residuals(problem, light))
     numbers = (problem.counts > 0) & ~problem.is_white[:, None]
-    rejected = float((robust[numbers] == 0).mean()) if numbers.any() else 0.0
-    return Solution(amounts, errors, told, rejected)
+    kept = numbers & (robust > 0)
+    rejected = 1 - float(kept.sum() / max(numbers.sum(), 1))
+    return Solution(amounts, errors, told, kept, rejected)
 
 
 def _residuals(problem: Problem, light: Float) -> Float:
@@ -179,7 +185,8 @@ def _normal(problem: Problem, weights: Float) -> tuple[Float, Float]:
 
 def _least_squares(problem: Problem, weights: Float) -> Float:
     gram, right = _normal(problem, weights)
-    found = nonnegative_least_squares(gram + RIDGE * np.diag(np.diag(gram)), right)
+    ridge = np.einsum("jcp,j->p", problem.free, problem.ridge) / problem.free.sum(axis=(0, 1))
+    found = nonnegative_least_squares(gram + np.diag(ridge * np.diag(gram)), right)
     return problem.free @ found
 
 
@@ -189,7 +196,7 @@ def _told(problem: Problem, weights: Float, off: Float) -> tuple[Float, NDArray[
     own = np.sqrt(np.diag(gram))
     known = own > 0
     size = np.where(known, own, 1.0)
-    correlations = gram / size / size[:, None] + np.diag(np.where(known, RIDGE, 1.0))
+    correlations = gram / size / size[:, None] + np.diag(np.where(known, LEAST_RIDGE, 1.0))
     values, vectors = np.linalg.eigh(correlations)
     mixed = (np.abs(vectors[:, values < LEAST_EIGENVALUE]) > LEAST_PART).any(axis=1)
     inverse = np.linalg.inv(correlations) / size / size[:, None]

@@ -13,7 +13,7 @@ Float = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 # Of the brightest value: below, noise does not shrink with the signal any more.
-FLOOR = 0.02
+FLOOR = 0.05
 # Bisquare: 95 % efficient for Gaussian noise (Beaton & Tukey 1974).
 BISQUARE, MAD_TO_SIGMA = 4.685, 1.4826
 # Where the data say nothing, and only there, the curve is as straight as it can be.
@@ -133,7 +133,7 @@ class _Basis:
                 flat = np.bincount((i * count + j).ravel(), (weight * a * b).ravel(), count**2)
                 matrix += flat.reshape(count, count)
         matrix += self._straight() * STRAIGHTNESS * np.trace(matrix) / count
-        return np.linalg.solve(matrix, right), matrix
+        return np.asarray(np.linalg.solve(matrix, right), np.float64), matrix
 
     def _straight(self) -> Float:
         """Σ (second difference)² over the knots, as shares of their range; f(0) = 0 if dark."""

@@ -54,10 +54,9 @@ def _curves(fit: SurfaceFit) -> Panel:
         shown = np.where((flat >= 0) & (flat <= top[1]), flat, np.nan)
         points.append(_points(fit, c, lux, shown))
     gain = float(knots @ curve[:, 1] / (knots @ knots))
-    straight = Curve(
-        "straight", MIDDLE_GREY, np.linspace(0, knots[-1], 40), np.linspace(0, gain * knots[-1], 40),
-        1.5, dash_px=6.0,
-    )  # fmt: skip
+    # Pieces short enough for dashes to show.
+    across = np.linspace(0.0, top[0], 40, dtype=np.float64)
+    straight = Curve("straight", MIDDLE_GREY, across, gain * across, 1.5, dash_px=6.0)
     lines = [Curve(name, COLOURS[c], knots, curve[:, c], 2.5) for c, name in enumerate(CHANNELS)]
     start = ", 0 at 0 lx assumed" if fit.zero_assumed else ""
     return Panel(

@@ -135,7 +135,10 @@ def _check_known(known: NDArray[np.bool_], clipped: NDArray[np.bool_], name: str
 
 
 def _knots(samples: Samples, name: str) -> Float:
-    """Rising illuminances (n,), in lx: the levels there are, or steps of √E. Raises `InputError`."""
+    """Rising illuminances (n,) in lx: the levels there are, or steps of √E.
+
+    Raises `InputError`.
+    """
     lux = np.sort(samples.lux[samples.known])
     low, high = float(lux[0]), float(lux[-1])
     if high <= low * LEAST_RANGE or high <= 0:
@@ -148,8 +151,12 @@ def _knots(samples: Samples, name: str) -> Float:
     starts = np.concatenate([[0], np.flatnonzero(np.diff(lux) > (SAME_LEVEL - 1) * lux[:-1]) + 1])
     if len(starts) <= KNOTS and _are_levels(lux, starts):
         return np.array([float(part.mean()) for part in np.split(lux, starts[1:])])
-    wanted = np.linspace(np.sqrt(low), np.sqrt(high), KNOTS) ** 2
-    inside = [e for e in wanted[1:-1] if LEAST_VALUES <= np.searchsorted(lux, e) <= len(lux) - LEAST_VALUES]
+    wanted = np.linspace(low**0.5, high**0.5, KNOTS, dtype=np.float64) ** 2
+    inside = [
+        e
+        for e in wanted[1:-1]
+        if LEAST_VALUES <= np.searchsorted(lux, e) <= len(lux) - LEAST_VALUES
+    ]
     return _with_values(lux, np.array([low, *inside, high]))
 
 
@@ -204,7 +211,8 @@ def _shape(knots: Float, rising: Float) -> tuple[Float, Float]:
     lit = (knots >= EXPONENT_FROM * knots[-1])[:, None] & (rising > 0)
     exponents: list[float] = []
     for c in range(3):
-        x, y = np.log(knots[lit[:, c]]), np.log(rising[lit[:, c], c])
+        x: Float = np.log(knots[lit[:, c]])
+        y: Float = np.log(rising[lit[:, c], c])
         exponents.append(float(np.polyfit(x, y, 1)[0]) if len(x) > 1 else float("nan"))
     gain = (knots @ rising) / (knots @ knots)
     distance = np.abs(rising - knots[:, None] * gain).max(axis=0) / rising.max(axis=0)

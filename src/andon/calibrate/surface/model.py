@@ -59,7 +59,7 @@ class SurfaceFit:
     samples : what was fitted.
     texture : (pixels, 3), a; its mean is 1.
     relative : (pixels, photographs, 3), residual as a share of what is predicted, whose floor is
-        2 % of the brightest; NaN where nothing is known.
+        5 % of the brightest; NaN where nothing is known.
     rms_relative : (3,) root mean square, corrected for what the texture takes up.
     photograph_rms : (photographs,) the same of each photograph.
     outlier_share : residuals that the fit gave no weight.

@@ -2,8 +2,8 @@
 
 Stray Scanner (kekeblom/StrayVisualizer): rgb.mp4 of 1920×1440, depth/000000.png of 256×192 in mm,
 confidence/ of 0, 1, 2, camera_matrix.csv of the video, odometry.csv with named columns, world from
-camera; its own viewer hands these poses to Open3D as they are: the camera's y is down, and the world is
-ARKit's, y up.
+camera; its own viewer hands these poses to Open3D as they are: the camera's y is down, and the
+world is ARKit's, y up.
 
 ARKitScenes (Baruch et al. 2021): lowres_wide and lowres_depth with names ``VIDEO_TIME.png``, a
 ``.pincam`` for each (width height fx fy cx cy), and lowres_wide.traj with lines ``time`` rotation

@@ -2,9 +2,9 @@
 
 Open3D's ``realsense_recorder.py`` (reconstruction system): color/000000.jpg, depth/000000.png in
 mm, *aligned to colour*, camera_intrinsic.json with ``intrinsic_matrix`` column by column. The
-viewer's snapshot (librealsense): ``NAME_Color.png``, ``NAME_Depth.raw`` (uint16, 1 mm by default) and
-two metadata CSV files with lines ``Fx,615.3``. There depth is a camera of its own; it fits the
-picture only if it was aligned, and then both have the same intrinsics.
+viewer's snapshot (librealsense): ``NAME_Color.png``, ``NAME_Depth.raw`` (uint16, 1 mm by default)
+and two metadata CSV files with lines ``Fx,615.3``. There depth is of a camera of its own; it fits
+the picture only if it was aligned, and then both have the same intrinsics.
 """
 
 from __future__ import annotations

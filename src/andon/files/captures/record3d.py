@@ -1,11 +1,12 @@
 """Record3D: a .r3d file, which is a zip, or the folder that it unpacks to.
 
 ``metadata`` (JSON) has w, h of the pictures, dw, dh of the depth, K column by column
-[fx, 0, 0, 0, fy, 0, cx, cy, 1], or perFrameIntrinsicCoeffs (fx, fy, cx, cy), and poses (qx qy qz qw x y
-z): world from camera of ARKit, whose camera looks along −z with y up; its world's y is up.
+[fx, 0, 0, 0, fy, 0, cx, cy, 1], or perFrameIntrinsicCoeffs (fx, fy, cx, cy), and poses (qx qy qz qw
+x y z): world from camera of ARKit, whose camera looks along −z with y up; its world's y is up.
 rgbd/N.jpg are pictures, rgbd/N.depth float32 metres, rgbd/N.conf confidences 0, 1, 2, both packed
-by LZFSE, for which Python has no decoder of its own: `lzfse` from PyPI is asked for. Depth may also be
-rgbd/N.exr, of those who unpacked it. (record3d.app; read as nerfstudio's ``record3d_utils`` does.)
+by LZFSE, for which Python has no decoder of its own: `lzfse` from PyPI is asked for. Depth may also
+be rgbd/N.exr, of those who unpacked it. (record3d.app; poses as nerfstudio's ``record3d_utils``
+reads them.)
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -165,16 +166,18 @@ def _depth_size(root: Tree, size: tuple[int, int]) -> tuple[int, int]:
 
 
 def _unpacked(data: bytes, count: int, name: str, path: Path) -> bytes:
-    """`count` bytes of an LZFSE stream."""
+    """`count` bytes of an LZFSE stream, which is at most a header longer than what it holds."""
+    if len(data) > count + 1024:
+        raise InputError(f"{name} must unpack to {count} bytes, is longer packed", file=path)
     try:
-        import liblzfse  # pyright: ignore[reportMissingImports]
+        import lzfse  # pyright: ignore[reportMissingImports]
     except ImportError as error:
         raise MachineError(
             f"{path}: {name} is packed by LZFSE, and nothing here unpacks it",
             remedy="pip install lzfse; or unpack the depth to EXR beside the pictures",
         ) from error
     try:
-        values = bytes(liblzfse.decompress(data))  # pyright: ignore[reportUnknownMemberType, reportUnknownArgumentType]
+        values = bytes(cast(Any, lzfse).decompress(data))
     except Exception as error:  # its own error class differs between its two packages
         raise InputError(f"{name} must be a sound LZFSE stream", file=path) from error
     if len(values) != count:

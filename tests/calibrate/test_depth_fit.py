@@ -98,7 +98,7 @@ def test_a_tilted_camera_knows_which_way_is_down():
     found = fit_depth(relative_depth(r, view, "inverse"), known)
     assert_agree([found.scale, found.shift], [0.013, 0.05], rtol=1e-8)
     level = relative_depth(r, VIEW, "inverse")
-    with pytest.raises(InputError, match="floor's slope is 2.*°, stated 0°"):
+    with pytest.raises(InputError, match=r"floor's slope is 2.*°, stated 0°"):
         fit_depth(level, known)
 
 

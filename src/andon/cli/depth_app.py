@@ -6,7 +6,7 @@ from typing import Any
 
 import typer
 
-from andon.cli.depth_options import FitOptions
+from andon.cli.depth_options import FitOptions, ImportOptions
 from andon.cli.options import takes
 
 __all__ = ["depth_app"]
@@ -41,3 +41,26 @@ def fit(**typed: Any) -> None:
     from andon.cli.depth_fit import run
 
     run(FitOptions(**typed))
+
+
+@depth_app.command("import")
+@takes(ImportOptions)
+def import_(**typed: Any) -> None:
+    """Take a frame of a capture by a phone, a depth camera or COLMAP, as `andon relight` takes it.
+
+    Known are folders of TUM RGB-D, RealSense (Open3D's recorder, snapshots of the viewer), Record3D
+    (.r3d, too), Stray Scanner, ARKitScenes, COLMAP's dense workspace, and the slambook's.
+    Writes photo, depth.exr (metres, holes NaN), camera.toml and scene.toml.
+
+    Examples:
+
+        andon depth import rgbd_dataset_freiburg1_desk -o desk --frame 120
+
+        andon depth import living_room.r3d -o room
+
+        andon relight --scene room/scene.toml -o lit.png
+            --lamp preset=bulb,position=0,0.3,-1.5
+    """
+    from andon.cli.depth_import import run
+
+    run(ImportOptions(**typed))

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["FitOptions", "RelativeKind"]
+__all__ = ["FitOptions", "ImportOptions", "RelativeKind"]
 
 
 class RelativeKind(StrEnum):
@@ -78,3 +78,18 @@ class FitOptions:
         Path | None, typer.Option(help="PNG: depth, what is known, seen from above and aside.")
     ] = None
     json: Annotated[Path | None, typer.Option(help="The report as JSON.")] = None
+
+
+@dataclass(frozen=True)
+class ImportOptions:
+    """The options of ``andon depth import``, as typed; each field is one of them."""
+
+    capture: Annotated[Path, typer.Argument(help="Folder of the capture, or a .r3d file.")]
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the frame's files.")]
+    frame: Annotated[
+        str | None, typer.Option(help="Its name, or its number from 0; default: the first.")
+    ] = None
+    camera: Annotated[
+        Path | None, typer.Option(help="Intrinsics instead of the capture's; its pose stays.")
+    ] = None
+    scale_to_m: Annotated[float | None, typer.Option(help="Metres per unit, of COLMAP.")] = None

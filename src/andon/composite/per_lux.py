@@ -24,10 +24,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.composite.curves import light_of
 from andon.composite.model import Ambient, MeasuredSurface
 from andon.quantities import CameraFrame
 
-__all__ = ["MAP_ERROR", "MID_GREY", "NOISE_FLOOR", "map_scale", "per_lux", "photograph_weight"]
+__all__ = [
+    "MAP_ERROR",
+    "MID_GREY",
+    "NOISE_FLOOR",
+    "map_scale",
+    "per_lux",
+    "photograph_weight",
+    "shown_reflectance",
+]
 
 Float = NDArray[np.float64]
 
@@ -53,17 +62,37 @@ def photograph_weight(lux: Float, luminance_per_unit: float, /) -> Float:
     return 1 / (1 + (NOISE_FLOOR / (MAP_ERROR * shown)) ** 2)
 
 
-def per_lux(
-    frame: CameraFrame, ambient: Ambient, measured: MeasuredSurface | None = None, /
+def per_lux(frame: CameraFrame, ambient: Ambient, measured: MeasuredSurface | None, /) -> Float:
+    """What one lux more adds to `light_of` each pixel (H, W, 3) of the real surface.
+
+    With a curve ρ is told in its lux: f⁻¹ of what the camera would show of it in the mean of E0.
+    """
+    e0, unit = ambient.lux_of(frame.view.name), frame.luminance_per_unit
+    captured = np.asarray(frame.linear, np.float64)
+    if measured is None:
+        return captured / e0
+    by_photograph = np.maximum(light_of(captured, measured), 0) / e0
+    if measured.reflectance is None:
+        return by_photograph
+    mean = ambient.mean_lux
+    known = np.maximum(light_of(measured.reflectance * mean / (np.pi * unit), measured), 0) / mean
+    return _joined(by_photograph, known, e0, unit)
+
+
+def shown_reflectance(
+    frame: CameraFrame, ambient: Ambient, measured: MeasuredSurface | None, /
 ) -> Float:
-    """Linear camera values (H, W, 3) that one lux more adds to each pixel of the real surface."""
-    e0 = ambient.lux_of(frame.view.name)
-    shown = np.asarray(frame.linear, np.float64) / e0
+    """ρ (H, W, 3) that the photograph shows, and where it is too dark, that is known."""
+    e0, unit = ambient.lux_of(frame.view.name), frame.luminance_per_unit
+    shown = np.pi * unit * np.asarray(frame.linear, np.float64) / e0
     if measured is None or measured.reflectance is None:
         return shown
-    w = photograph_weight(e0, frame.luminance_per_unit)
-    known = measured.reflectance / (np.pi * frame.luminance_per_unit)
-    return w * shown + (1 - w) * known
+    return _joined(shown, measured.reflectance, e0, unit)
+
+
+def _joined(by_photograph: Float, known: Float, e0: Float, luminance_per_unit: float) -> Float:
+    w = photograph_weight(e0, luminance_per_unit)
+    return w * by_photograph + (1 - w) * known
 
 
 def map_scale(reflectance: Float, frame: CameraFrame, ambient: Ambient, /) -> Float:
@@ -71,14 +100,14 @@ def map_scale(reflectance: Float, frame: CameraFrame, ambient: Ambient, /) -> Fl
 
     1 for a channel where too few pixels tell.
     """
-    shown, e0 = np.asarray(frame.linear, np.float64), ambient.lux_of(frame.view.name)
+    linear, e0 = np.asarray(frame.linear, np.float64), ambient.lux_of(frame.view.name)
     w = photograph_weight(e0, frame.luminance_per_unit)
-    tells = (w >= STRONG) & (shown >= LEAST_SHOWN) & (reflectance >= LEAST_REFLECTANCE)
+    tells = (w >= STRONG) & (linear >= LEAST_SHOWN) & (reflectance >= LEAST_REFLECTANCE)
     if frame.clipped is not None:
         tells &= ~frame.clipped[..., None]
-    seen = np.pi * frame.luminance_per_unit * shown / e0
+    shown = shown_reflectance(frame, ambient, None)
     scale = np.ones(3)
     for c in np.flatnonzero(tells.mean(axis=(0, 1)) >= LEAST_SHARE):
         own = tells[..., c]
-        scale[c] = np.median(seen[..., c][own] / reflectance[..., c][own])
+        scale[c] = np.median(shown[..., c][own] / reflectance[..., c][own])
     return scale

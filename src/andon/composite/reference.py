@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.composite.curves import dimmed_light, linear_of
 from andon.composite.model import Ambient, MeasuredSurface
 from andon.composite.per_lux import per_lux
 from andon.lamps import Lamp, PointLamp, SphereLamp, intensity_cd
@@ -38,17 +39,15 @@ def relit_linear(
 ) -> Float:
     """Linear camera values (H, W, 3) under the new light: captured × (dimming·E0 + ΔE)/E0.
 
-    Where light is taken away ΔE is negative; no light at all is the least that is left.
+    Where `measured` has a curve f that is f(f⁻¹(captured) × (dimming·E0 + ΔE)/E0). Where light is
+    taken away ΔE is negative; no light at all is the least that is left.
     """
-    captured = np.asarray(frame.linear, np.float64)
-    dimming, e0 = np.asarray(ambient.dimming), ambient.lux_of(frame.view.name)
-    if ambient.dimming_mode == "linear" and measured is None:
-        return captured * np.maximum(dimming + added_lux / e0, 0)
-    if ambient.dimming_mode == "linear":
-        dimmed = dimming * captured
-    else:
-        dimmed = frame.response.decode(dimming * frame.response.encode(captured))
-    return np.maximum(dimmed + per_lux(frame, ambient, measured) * added_lux, 0)
+    if measured is None and ambient.dimming_mode == "linear":
+        captured, e0 = np.asarray(frame.linear, np.float64), ambient.lux_of(frame.view.name)
+        return captured * np.maximum(np.asarray(ambient.dimming) + added_lux / e0, 0)
+    dimmed = dimmed_light(frame, ambient, measured)
+    light = dimmed + per_lux(frame, ambient, measured) * added_lux
+    return linear_of(np.maximum(light, np.minimum(dimmed, 0)), measured)
 
 
 def unlit_linear(

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.composite.per_lux import per_lux
+from andon.composite.per_lux import shown_reflectance
 from andon.engines.baked import lamps_in_probes
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
@@ -226,7 +226,6 @@ def _light(frame: CameraFrame, prepared: Prepared) -> NDArray[np.float32]:
         dimmed = dimming * linear
     else:
         dimmed = frame.response.decode(dimming * frame.response.encode(linear))
-    measured = prepared.measured.get(frame.view.name)
-    reflectance = np.pi * frame.luminance_per_unit * per_lux(frame, ambient, measured)
+    reflectance = shown_reflectance(frame, ambient, prepared.measured.get(frame.view.name))
     light = np.concatenate([frame.luminance_per_unit * dimmed, reflectance], axis=-1)
     return np.maximum(light, 0).astype(np.float32)

@@ -53,7 +53,6 @@ __all__ = ["Prepared", "prepare"]
 LATER_TABLES: tuple[str, ...] = ()
 
 LATER_KEYS = {
-    "surface": ("response",),
     "capture": ("depth", "pose", "noise"),
 }
 
@@ -255,7 +254,7 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
         for name, picture in pictures.items()
     }
     frames = {name: with_clipped_light(scene, frame) for name, frame in frames.items()}
-    measured, on_maps = measured_of(scene, views, frames, ambient)
+    measured, on_maps = measured_of(scene, views, frames, ambient, surface)
     surface = replace(surface, notes=(*surface.notes, *notes, *on_maps))
     return frames, ambient, surface, measured
 

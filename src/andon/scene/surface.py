@@ -208,10 +208,11 @@ class Surface(Table):
                 "reflectance and reflectance_map exclude each other", key="reflectance_map"
             )
         seen: set[str] = set()
-        for index, material in enumerate(entry.material for entry in self.response):
-            if material in seen:
+        for index, entry in enumerate(self.response):
+            if entry.mask is None and entry.material in seen:
                 raise refusal(
-                    f"{material!r} has a response already", key=f"response[{index}].material"
+                    f"{entry.material!r} has a response already", key=f"response[{index}].material"
                 )
-            seen.add(material)
+            if entry.mask is None:
+                seen.add(entry.material)
         return self

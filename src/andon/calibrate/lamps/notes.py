@@ -14,8 +14,7 @@ NOTABLE_REJECTED = 0.1
 
 def notes_of(fit: LampFit, /) -> tuple[str, ...]:
     """One line each."""
-    said = [*_on_same(fit), *_on_motion(fit), *_on_terms(fit), *_on_white(fit), *_on_error(fit)]
-    return tuple(said)
+    return (*_on_same(fit), *_on_motion(fit), *_on_terms(fit), *_on_white(fit), *_on_error(fit))
 
 
 def _on_same(fit: LampFit) -> list[str]:
@@ -49,7 +48,7 @@ def _on_terms(fit: LampFit) -> list[str]:
     if alike:
         notes.append(
             f"no pixel tells {' from '.join(alike)}: only their sum is known, and how it is "
-            "shared out is arbitrary"
+            "shared out is arbitrary (between dimming and bounce: all to dimming)"
         )
     notes += [
         f"the lamp {light.name!r} got no light: the reference is no brighter where it shines"

@@ -52,9 +52,17 @@ def stated_light(fit: LampFit, name: str, /) -> dict[str, Any]:
     if fit.scene is None:
         return {}
     table = next(table for table in fit.scene.lamp if table.name == name)
-    keys = (table.light, "rgb", "temperature_k", "chromaticity_xy")
-    keys += ("ground_illuminance_lux", "ground_rgb")
-    return {key: value for key in keys if (value := getattr(table, key, None)) is not None}
+    light = table.light or "intensity_cd"
+    keys = (
+        light,
+        "rgb",
+        "temperature_k",
+        "chromaticity_xy",
+        "ground_illuminance_lux",
+        "ground_rgb",
+    )
+    stated: dict[str, Any] = {key: getattr(table, key, None) for key in keys}
+    return {key: value for key, value in stated.items() if value is not None}
 
 
 def _light(fit: LampFit, light: FittedLight) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from shell_worlds import directions, far_intensity, lamp, sent_lm
 
 from andon.errors import InputError
 from andon.lamps import PointLamp, Shell, expand
@@ -10,7 +11,6 @@ from andon.lamps.shells.drum import drum_mesh
 from andon.lamps.shells.form import form_of
 from andon.lamps.shells.model import Drum
 from andon.lamps.triangles import triangle_areas
-from shell_worlds import directions, far_intensity, lamp, sent_lm
 
 CONE = Drum(0.17, 0.13, 0.22, 0.10)
 T = np.array([0.5, 0.4, 0.3])

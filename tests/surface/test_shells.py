@@ -34,7 +34,9 @@ def body(grown=0.0, flux_cd=50.0):
 def room(shade=None, *, lift=0.0):
     """Depth of a shade before a wall, as the view has it."""
     mesh = drum_mesh(drum() if shade is None else shade, 96, 8)
-    seen = trace(Geometry(mesh.positions + PLACE + (0, lift, 0), mesh.triangles), VIEW, is_object=False)
+    seen = trace(
+        Geometry(mesh.positions + PLACE + (0, lift, 0), mesh.triangles), VIEW, is_object=False
+    )
     return np.where(seen.valid, seen.depth, WALL_M), seen.valid
 
 

@@ -56,22 +56,23 @@ def _along_rows(inverse: Float, max_jump: float) -> tuple[Float, Int]:
     Rims of one surface are joined by a line; else the farther one goes on.
     """
     height, width = inverse.shape
-    row, column = np.indices(inverse.shape)
+    column = np.indices(inverse.shape)[1]
     known = np.isfinite(inverse)
     left = np.maximum.accumulate(np.where(known, column, -1), axis=1)
     right = np.minimum.accumulate(np.where(known, column, width)[:, ::-1], axis=1)[:, ::-1]
     closed = (left >= 0) & (right < width)
     start, end = np.clip(left, 0, None), np.clip(right, None, width - 1)
-    first: Float = inverse[row, start]
-    last: Float = inverse[row, end]
+    first, last = (np.take_along_axis(inverse, at, axis=1) for at in (start, end))
+    ahead = np.take_along_axis(_slopes(inverse, max_jump), start, axis=1)
+    back = np.take_along_axis(_slopes(inverse[:, ::-1], max_jump)[:, ::-1], end, axis=1)
     with np.errstate(invalid="ignore"):
         joined = np.maximum(first, last) <= (1 + max_jump) * np.minimum(first, last)
         share = (column - start) / np.maximum(end - start, 1)
         line = first + share * (last - first)
-        on_left = first + (column - start) * _slopes(inverse, max_jump)[row, start]
-        back = _slopes(inverse[:, ::-1], max_jump)[:, ::-1]
-        on_right = last + (end - column) * back[row, end]
-        value = np.where(joined, line, np.where(first < last, on_left, on_right))
+        on_left = first + (column - start) * ahead
+        on_right = last + (end - column) * back
+        farther: Float = np.asarray(np.where(first < last, on_left, on_right), np.float64)
+        value: Float = np.asarray(np.where(joined, line, farther), np.float64)
     gap = np.where(closed, right - left - 1, width + height)
     return np.where(closed, value, np.nan), gap
 

@@ -1,10 +1,11 @@
 """A room with its table lamp off and on: two photographs, a depth image, and a scene of them.
 
-The photographs are Mitsuba's pictures of `mitsuba_lamp_room` through a camera that nobody measured:
-a gamma of 2.0 with a shoulder, noise, 8 bits. The depth has 3 mm of noise, and holes at the rims of
-things (the shade's among them) and where the room is dark. `make_pictures` made the files that stand
-beside this module; the scene of them states what somebody with a ruler knows: where the bulb is and
-what the shade measures. Light is relative: E0 = 1 is that of the photograph, the same everywhere.
+The photographs are Mitsuba's pictures of `mitsuba_lamp_room` through a camera that nobody
+measured: a gamma of 2.0 with a shoulder, noise, 8 bits. The depth has 3 mm of noise, and holes at
+the rims of things (the shade's among them) and where the room is dark. `make_pictures` made the
+files that stand beside this module; the scene of them states what somebody with a ruler knows:
+where the bulb is and what the shade measures. Light is relative: E0 = 1 is that of the photograph,
+the same everywhere.
 """
 
 from __future__ import annotations

@@ -115,7 +115,12 @@ ROWS: tuple[Row, ...] = (
     *(_row("gpu", True, where) for where in WHERE),
     *(
         Row(
-            f"relight.lamp_on.{name}", "relight", None, "dB", TRUTH, lambda name=name: trivial_db(name)
+            f"relight.lamp_on.{name}",
+            "relight",
+            None,
+            "dB",
+            TRUTH,
+            lambda name=name: trivial_db(name),
         )
         for name in ("unchanged", "gain_one", "gain_channels")
     ),

@@ -167,16 +167,23 @@ class Renderer:
         """
         handles = self.draw(time_seconds, view, timed=True)
         engine, moment = self._engine, self._moment
-        drawn = engine.read(*handles)
+        surface, illuminance, luminance, image = engine.read(*handles)
         frame = self.prepared.frames[self._view_name(view)]
         layered = engine.read_glass(frame, handles[0], moment)
-        baked = engine.read_baked(drawn[0], moment)
-        report = report_of(self.prepared, engine, moment, frame, *drawn[:2], layered, baked)
+        baked = engine.read_baked(surface, moment)
+        bodies, filtered = engine.read_bodies(frame, handles[0], moment)
+        report = report_of(
+            self.prepared, engine, moment, frame, surface, illuminance, layered, baked
+        )
         return Frame(
             self.prepared.captured(frame.view.name),
-            *drawn,
+            surface,
+            illuminance,
+            luminance,
+            image,
             replace(report, stage_seconds=self.stage_seconds),
-            *engine.read_bodies(frame, handles[0], moment),
+            bodies,
+            filtered,
             engine.read_glare(frame),
             engine.read_seen(frame, *handles[2:]),
             layered,

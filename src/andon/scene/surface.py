@@ -101,17 +101,18 @@ class SurfaceResponse(Table):
 
     material: Name = Field(
         default="*",
-        description="Name of the material in the mesh; * is all others. Where `mask` is stated: "
-        "a name for messages.",
+        description="Name of the material in the mesh; * is all other pixels. Where `mask` is "
+        "stated: a name for messages.",
     )
     mask: Reference | None = Field(
         default=None,
         description="Picture of the view, white where the surface is; for surfaces without "
-        "materials (depth, normals).",
+        "materials (depth, normals). Goes before materials; where masks overlap the later "
+        "counts.",
     )
     file: Reference | None = Field(
         default=None,
-        description="Response file, instead of the two lists.",
+        description="CSV of `andon calibrate surface`, instead of the two lists.",
     )
     illuminance_lux: tuple[NonNegative, ...] = Field(
         default=(),
@@ -119,7 +120,8 @@ class SurfaceResponse(Table):
     )
     rgb: tuple[tuple[NonNegative, NonNegative, NonNegative], ...] = Field(
         default=(),
-        description="Linear camera RGB at each of them, rising in every channel.",
+        description="Linear camera RGB at each of them, 1 is the sensor's white, rising in every "
+        "channel. Straight between them and on beyond both ends.",
     )
 
     @model_validator(mode="after")

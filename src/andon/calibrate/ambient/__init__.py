@@ -30,7 +30,8 @@ intrinsic images, learned   weights and data that nobody here can check
 Limits
     No sharp shadow of a lamp that is not named. Two surfaces without a common chromaticity have an
     offset to each other that only the field's smoothness knows. The mean colour of the light and of
-    what it falls on cannot be told apart: neutral, unless stated.
+    what it falls on cannot be told apart: neutral, unless stated. Nor can their scale, by a named
+    source either: how much of the light is its own is not known well enough.
 
 Sources: Land & McCann 1971; Barron & Malik 2015 (log ρ + log E with priors on both); Rasmussen &
 Williams 2006 (the field, its inducing points and its error); Geman & McClure 1987; Ramamoorthi &

@@ -18,8 +18,6 @@ __all__ = ["estimate_ambient"]
 Float = NDArray[np.float64]
 
 DEFAULT_SETTINGS = AmbientSettings()
-# Less than this share of the light does not tell the source's own scale.
-LEAST_SHARE = 0.2
 # Standard deviation of log light that the field does not know of: light with edges, and materials
 # that are of one chromaticity but not of one reflectance. That of the rooms of `verify`.
 MODEL_ERROR = 0.2
@@ -58,18 +56,10 @@ def estimate_ambient(
         for strength, source, small in zip(strengths, sources_lux, observed.sources, strict=True)
     ]
     light = rest * (1 + sum(own, np.zeros(1)))
-    mean = light.mean(axis=0)
     relative = np.ones((*seen.view.shape, 3))
-    relative[valid] = light / mean
+    relative[valid] = light / light.mean(axis=0)
     shares = tuple(float((rest * part).sum() / light.sum()) for part in own)
-    scale = None
-    if sum(shares) >= LEAST_SHARE:
-        direct = sum(sources_lux, np.zeros(3))[valid]
-        # The sources' stated light over what the fit says that they give.
-        scale = np.nansum(direct, axis=0) / (rest * sum(own)).sum(axis=0) * mean
-    return AmbientEstimate(
-        relative, _errors(fitted, observed, seen), observed.used_share, shares, scale
-    )
+    return AmbientEstimate(relative, _errors(fitted, observed, seen), observed.used_share, shares)
 
 
 def _errors(fitted: Fitted, observed: Observed, seen: Surface) -> Float:

@@ -12,6 +12,7 @@ unit prior.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +63,7 @@ class Field:
 
     def features(self, position: Float, normal: Float, /) -> Float:
         """Φ (n, m) at n points; a field is Φ·w with w of unit prior."""
-        return self._covariance(position, normal) @ self._from_lower
+        return np.asarray(self._covariance(position, normal) @ self._from_lower, np.float64)
 
     def values(self, weights: Float, position: Float, normal: Float, /) -> Float:
         """Φ·w (n,) or (n, c) of `weights` (m,) or (m, c), without keeping Φ."""
@@ -70,13 +71,17 @@ class Field:
         found = np.empty((len(position), *weights.shape[1:]))
         for start in range(0, len(position), AT_ONCE):
             part = slice(start, start + AT_ONCE)
-            found[part] = self._covariance(position[part], normal[part]) @ alpha
+            # float32 is wrong by 1e-4 of log light here, and takes a third of the time.
+            place = position[part].astype(np.float32), normal[part].astype(np.float32)
+            found[part] = self._covariance(*place) @ alpha.astype(np.float32)
         return found
 
-    def _covariance(self, position: Float, normal: Float) -> Float:
-        cosine = normal @ self._normal.T
-        square = (position**2).sum(axis=1)[:, None] + (self._position**2).sum(axis=1)
-        square = np.maximum(square - 2 * position @ self._position.T, 0)
+    def _covariance(self, position: NDArray[Any], normal: NDArray[Any]) -> NDArray[Any]:
+        """(n, m), in the precision of what is given."""
+        own_position = self._position.astype(position.dtype)
+        cosine = normal @ self._normal.astype(normal.dtype).T
+        square = (position**2).sum(axis=1)[:, None] + (own_position**2).sum(axis=1)
+        square = np.maximum(square - 2 * position @ own_position.T, 0)
         total = np.zeros_like(cosine)
         for term in self._terms:
             c0, c1, c2 = term.bands

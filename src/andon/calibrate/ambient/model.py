@@ -53,16 +53,15 @@ class AmbientEstimate:
     relative : (H, W, 3) > 0, the mean of each channel over the surface is 1; 1 in holes.
     log_error : (H, W) standard deviation of log E0 that the field states; NaN in holes.
     used_share : of the pixels with a surface, those neither clipped, black nor on an edge.
-    source_shares : of the light on the surface, what each known source gives directly, 0…1.
-    source_scale : (3,) lux per unit of `relative` by the known sources; None: there are none, or
-        they give too little light to tell.
+    source_shares : of the light on the surface, what each known source gives directly, 0…1. Too
+        rough for a scale: in the rooms of `verify` 1.4 to 1.8 times the true share, since light
+        that walls reflect looks like their own.
     """
 
     relative: NDArray[np.float64]
     log_error: NDArray[np.float64]
     used_share: float
     source_shares: tuple[float, ...] = ()
-    source_scale: NDArray[np.float64] | None = None
 
     @property
     def stated_error(self) -> float:

@@ -16,7 +16,7 @@ __all__ = ["Placed", "placed"]
 
 Float = NDArray[np.float64]
 
-By = Literal["lux", "reflectance", "sources", "nothing"]
+By = Literal["lux", "reflectance", "nothing"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,17 +52,13 @@ def placed(
     mean_lux : photometric mean of E0 over the surface, > 0.
     mean_reflectance : photometric mean of what the surface reflects, in (0, 1]: needs a frame whose
         `luminance_per_unit` is stated.
-    colour : (3,) of the mean light, > 0, of any scale. Default: that of the known sources, else
-        neutral.
+    colour : (3,) of the mean light, > 0, of any scale; default: neutral.
 
-    One of the first two at most; without, the known sources tell the scale, if they do.
+    One of the first two at most; without, E0 is relative.
     Raises `InputError` for numbers out of range.
     """
     _check(mean_lux, mean_reflectance, colour)
-    own = estimate.source_scale
-    if colour is None:
-        colour = np.ones(3) if own is None else own
-    tinted = estimate.relative * colour
+    tinted = estimate.relative * (np.ones(3) if colour is None else colour)
     valid = seen.valid
     mean = float(photometric(tinted[valid]).mean())
     if mean_lux is not None:
@@ -71,9 +67,6 @@ def placed(
         luminance = frame.luminance_per_unit * np.asarray(frame.linear, np.float64)[valid]
         shown = np.pi * float(photometric(luminance / tinted[valid]).mean())
         return Placed(tinted * (shown / mean_reflectance), "absolute", "reflectance")
-    if own is not None:
-        scale = float(photometric(estimate.relative * own)[valid].mean()) / mean
-        return Placed(tinted * scale, "absolute", "sources")
     return Placed(tinted / mean, "relative", "nothing")
 
 

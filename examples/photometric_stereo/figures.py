@@ -3,7 +3,8 @@
 python examples/photometric_stereo/figures.py -o OUT
 
 Needs ``ANDON_DATA``, the folder that holds psm_uw; takes about two minutes. Writes for both things
-``NAME-pairs.png`` (dB over the best global gain), ``NAME-examples.png``, and ``pairs.csv``.
+``NAME-pairs.png`` (dB over the best global gain), ``NAME-examples.png``, and ``pairs.csv``; with
+``--scenes`` instead ``NAME/NAME-I-J.toml`` for every pair, for ``andon relight --scene``.
 """
 
 from __future__ import annotations
@@ -22,7 +23,13 @@ from numpy.typing import NDArray
 from andon.display.false_colour import GAP_PX, contact_sheet
 from andon.files.pictures.write import write_png
 from andon.responses import srgb_encode
-from andon.verify.relit_photographs import OBJECTS, Photographs, known_without, photographs
+from andon.verify.relit_photographs import (
+    OBJECTS,
+    Photographs,
+    known_without,
+    photographs,
+    write_pair,
+)
 from andon.verify.relit_scores import METHODS, Pair, pairs_of, predictions, score
 
 Rgb = NDArray[np.uint8]
@@ -178,12 +185,30 @@ def write_csv(path: Path, pairs: dict[str, Sequence[Pair]]) -> None:
                 )
 
 
+def write_scenes(folder: Path, shots: Photographs) -> None:
+    """A scene file for each pair, and the pictures that they name."""
+    for target in range(len(shots.codes)):
+        known = known_without(shots, target)
+        for source in shots.others(target).tolist():
+            write_pair(folder, shots, known, source)
+
+
 def main() -> None:
     """Writes the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder for the figures")
-    folder = parser.parse_args().output
+    parser.add_argument(
+        "--scenes", action="store_true", help="write the scene files of all pairs instead"
+    )
+    arguments = parser.parse_args()
+    folder: Path = arguments.output
     folder.mkdir(parents=True, exist_ok=True)
+    if arguments.scenes:
+        for name in OBJECTS:
+            write_scenes(folder / name, photographs(name))
+        return
     pairs: dict[str, Sequence[Pair]] = {name: pairs_of(name) for name in OBJECTS}
     for name, own in pairs.items():
         write_png(folder / f"{name}-pairs.png", table(name, own))

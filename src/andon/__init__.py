@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from andon.bake import Baked, BakeReport, bake_file, bake_probes, placed_in
     from andon.errors import AndonError, InputError, MachineError
     from andon.files import Distribution, read_photometry
+    from andon.files.responses import read_surface_response
     from andon.files.volumes import Cells, Distances, ProbeVolume, Zone, plain_volume
     from andon.files.volumes import read_volume as read_probe_volume
     from andon.files.volumes import write_volume as write_probe_volume
@@ -51,7 +52,7 @@ if TYPE_CHECKING:
         Surface,
         photometric,
     )
-    from andon.responses import Response
+    from andon.responses import Response, SurfaceCurve
     from andon.scene import Scene, load_scene, scene_from_dict
     from andon.spaces import View, look_at
     from andon.transport.probes.light import (
@@ -105,6 +106,7 @@ _PUBLIC = {
     "SphereLamp": "lamps",
     "SpotLamp": "lamps",
     "Surface": "quantities",
+    "SurfaceCurve": "responses",
     "TubeLamp": "lamps",
     "View": "spaces",
     "Zone": "files.volumes",
@@ -122,6 +124,7 @@ _PUBLIC = {
     "probe_light": "transport.probes.light",
     "read_photometry": "files",
     "read_probe_volume": "files.volumes:read_volume",
+    "read_surface_response": "files.responses",
     "relight": "pipeline",
     "render": "pipeline",
     "scene_from_dict": "scene",
@@ -166,6 +169,7 @@ __all__ = [
     "SphereLamp",
     "SpotLamp",
     "Surface",
+    "SurfaceCurve",
     "TubeLamp",
     "View",
     "Zone",
@@ -183,6 +187,7 @@ __all__ = [
     "probe_light",
     "read_photometry",
     "read_probe_volume",
+    "read_surface_response",
     "relight",
     "render",
     "scene_from_dict",

@@ -7,20 +7,23 @@
 //!import andon/gbuffer/gbuffer.wgsl
 //!import andon/transport/direct/direct.wgsl
 //!import andon/composite/composite.wgsl
+//!import andon/composite/curves.wgsl
 //!import andon/composite/receivers.wgsl
 //!import andon/transport/baked/none.wgsl
 
 @group(0) @binding(0) var gbuffer: texture_2d<u32>;
 @group(0) @binding(1) var<uniform> view: ViewRecord;
 @group(0) @binding(2) var<uniform> ambient: AmbientRecord;
-// The captured picture, linear; where E0 or ρ is a picture: what is left of it after dimming.
+// The captured picture, linear; where E0 or ρ is a picture: what is left of it after dimming; where
+// surfaces have curves: in their lux, and in alpha which curve a pixel has, −1: none.
 @group(0) @binding(3) var captured: texture_2d<f32>;
 // Where E0 or ρ is a picture: what one lux adds.
 @group(0) @binding(4) var per_lux: texture_2d<f32>;
 // Of the materials of virtual objects, MAX_OBJECT_MATERIALS of them: cd/m² that they emit, and
 // (taking.wgsl) what light they take.
 @group(0) @binding(5) var<uniform> emitted: array<vec4f, 4096>;
-// Where something is baked, binding 6 is the picture of it.
+// Where something is baked, binding 6 is the picture of it; where surfaces have curves, binding 7 is
+// their table.
 
 fn added_lux(point: SurfacePoint, pixel: vec2f) -> vec3f {
   let bias = select(direct.bias_real_m, direct.bias_object_m, (point.flags & OBJECT) != 0u);
@@ -61,6 +64,15 @@ fn point_at(pixel: vec2f) -> SurfacePoint {
   let lux = added_lux(point, pixel.xy);
   let at = vec2i(pixel.xy);
   let real = relit_by_maps(textureLoad(captured, at, 0).xyz, textureLoad(per_lux, at, 0).xyz, lux);
+  return vec4f(min(objects(point, pixel.xy, lux, real), MOST), 1.0);
+}
+
+@fragment fn relit_with_curves(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+  let point = point_at(pixel.xy);
+  let lux = added_lux(point, pixel.xy);
+  let at = vec2i(pixel.xy);
+  let light = textureLoad(captured, at, 0);
+  let real = relit_by_curve(light.xyz, textureLoad(per_lux, at, 0).xyz, lux, light.w);
   return vec4f(min(objects(point, pixel.xy, lux, real), MOST), 1.0);
 }
 

@@ -11,8 +11,8 @@ shared, the rest is done per view.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal
@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.display.model import Seen
+from andon.engines.report import Report, report_of
 from andon.errors import InputError, MachineError, nearest_name
 from andon.glass.layers import Layered
-from andon.glass.report import GlassReport
 from andon.quantities import (
     CameraFrame,
     DisplayImage,
@@ -32,7 +32,7 @@ from andon.quantities import (
     Photometry,
     Surface,
 )
-from andon.responses import SRGB, Response
+from andon.responses import SRGB, Response, SurfaceCurve
 from andon.scene import Scene
 from andon.spaces import View
 from andon.transport.baked.model import BakedSeen
@@ -46,45 +46,6 @@ __all__ = ["ENGINES", "Frame", "Renderer", "Report", "relight", "render"]
 
 EngineName = Literal["auto", "gpu", "reference"]
 ENGINES = ("auto", "gpu", "reference")
-
-
-@dataclass(frozen=True)
-class Report:
-    """What is worth knowing about a frame besides its pictures.
-
-    Attributes
-    ----------
-    engine, adapter : what drew it.
-    photometry : ``absolute`` or ``relative``, of every number in the frame.
-    hole_pixels, clipped_pixels : without geometry (unchanged), and at the sensor's end.
-    occluder_triangles, occluder_triangles_before, occluder_error_m, occluder_lost_share : of the
-        shadow geometry; the error is the 95th percentile of what decimation moved, in metres, and
-        the lost share is what of the real surface has no shadow geometry where it stands.
-    shadow_bias_m : shadows thinner than this are lost on the real surface, or on the GPU thinner
-        than a texel of the shadow map.
-    maps_redrawn : shadow maps of lamps that had moved.
-    stage_seconds : wall time of each stage.
-    ignored_tables : tables and keys of the scene that this version does not draw.
-    glass : where the layers of glass appear and what is in focus; None without glass.
-    uncovered_share : of the pixels that take baked light, those that no illuminance map sees;
-        None without [baked].
-    """
-
-    engine: str
-    adapter: str
-    photometry: str
-    hole_pixels: int
-    clipped_pixels: int
-    occluder_triangles: int
-    occluder_triangles_before: int
-    occluder_error_m: float
-    occluder_lost_share: float
-    shadow_bias_m: float
-    maps_redrawn: int
-    stage_seconds: Mapping[str, float] = field(default_factory=dict[str, float])
-    ignored_tables: tuple[str, ...] = ()
-    glass: GlassReport | None = None
-    uncovered_share: float | None = None
 
 
 @dataclass(frozen=True)
@@ -205,26 +166,28 @@ class Renderer:
         view : ``mono``, ``left`` or ``right``; None is the rig's first.
         """
         handles = self.draw(time_seconds, view, timed=True)
-        surface, illuminance, luminance, image = self._engine.read(*handles)
-        captured = self.prepared.frames[self._view_name(view)]
-        bodies, filtered = self._engine.read_bodies(captured, handles[0], self._moment)
-        layered = self._engine.read_glass(captured, handles[0], self._moment)
-        baked = self._engine.read_baked(surface, self._moment)
-        report = self._report(captured, surface, layered, baked)
-        seen = self._engine.read_seen(captured, *handles[2:])
+        engine, moment = self._engine, self._moment
+        surface, illuminance, luminance, image = engine.read(*handles)
+        frame = self.prepared.frames[self._view_name(view)]
+        layered = engine.read_glass(frame, handles[0], moment)
+        baked = engine.read_baked(surface, moment)
+        bodies, filtered = engine.read_bodies(frame, handles[0], moment)
+        report = report_of(
+            self.prepared, engine, moment, frame, surface, illuminance, layered, baked
+        )
         return Frame(
-            self.prepared.captured(captured.view.name),
+            self.prepared.captured(frame.view.name),
             surface,
             illuminance,
             luminance,
             image,
-            report,
+            replace(report, stage_seconds=self.stage_seconds),
             bodies,
             filtered,
-            self._engine.read_glare(captured),
-            seen,
+            engine.read_glare(frame),
+            engine.read_seen(frame, *handles[2:]),
             layered,
-            self._engine.read_highlights(captured),
+            engine.read_highlights(frame),
             baked,
             self.prepared,
         )
@@ -268,37 +231,6 @@ class Renderer:
             )
         return view
 
-    def _report(
-        self,
-        captured: CameraFrame,
-        surface: Surface,
-        layered: Layered | None,
-        baked: BakedSeen | None,
-    ) -> Report:
-        model = self.prepared.surface
-        glass = self.prepared.glass
-        clipped = 0 if captured.clipped is None else int(captured.clipped.sum())
-        return Report(
-            engine=self._engine.name,
-            adapter=self._engine.adapter,
-            photometry=self.prepared.photometry,
-            hole_pixels=surface.holes,
-            clipped_pixels=clipped,
-            occluder_triangles=len(model.shadow_casters.triangles),
-            occluder_triangles_before=model.occluder.triangles_before
-            + len(model.casters.triangles),
-            occluder_error_m=model.occluder.error_m,
-            occluder_lost_share=model.occluder.lost_share,
-            shadow_bias_m=model.bias.real_m,
-            maps_redrawn=self._engine.maps_redrawn,
-            stage_seconds=self.stage_seconds,
-            ignored_tables=self.prepared.ignored,
-            glass=glass.report(layered, self._moment.focus, self._moment.lamps)
-            if glass and layered
-            else None,
-            uncovered_share=None if baked is None else baked.uncovered_share,
-        )
-
 
 def render(
     scene: Scene,
@@ -329,6 +261,7 @@ def relight(
     photometry: Photometry = "absolute",
     engine: EngineName = "auto",
     reflectance_map: NDArray[Any] | None = None,
+    curves: SurfaceCurve | Sequence[tuple[SurfaceCurve, NDArray[np.bool_]]] = (),
 ) -> Frame:
     """Relights arrays: for those who have a picture and its depth in memory already.
 
@@ -343,6 +276,8 @@ def relight(
     dimming : share of E0 that is left, ≥ 0; number or three channels.
     reflectance_map : (H, W, 3) linear ρ in [0, 1], that added light falls on where E0 is too weak
         for the photograph to tell it; None: only the photograph tells.
+    curves : of the whole picture, or pairs of a surface's curve and its pixels (H, W) bool; where
+        masks overlap the later one counts.
 
     Raises
     ------
@@ -361,6 +296,7 @@ def relight(
         response=response,
         photometry=photometry,
         reflectance_map=reflectance_map,
+        curves=curves,
     )
     return Renderer(prepared, engine).render()
 

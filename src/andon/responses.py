@@ -129,11 +129,31 @@ class SurfaceCurve:
     Attributes
     ----------
     illuminance_lux : (n,) float64 ≥ 0, strictly increasing, n ≥ 2.
-    linear : (n, 3) float64, linear camera values, strictly increasing per channel.
+    linear : (n, 3) float64 ≥ 0, linear camera values, strictly increasing per channel.
+
+    Raises `InputError` for other arrays.
     """
 
     illuminance_lux: NDArray[np.float64]
     linear: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        lux, linear = np.asarray(self.illuminance_lux), np.asarray(self.linear)
+        if lux.ndim != 1 or len(lux) < 2 or linear.shape != (len(lux), 3):
+            raise InputError(
+                "must be at least 2 illuminances (n,) and as many rows of 3 channels, got "
+                f"{lux.shape} and {linear.shape}",
+                field="surface response",
+            )
+        for name, table in (("illuminance_lux", lux), ("linear", linear)):
+            if not np.isfinite(table).all() or (table < 0).any():
+                raise InputError("must be finite and ≥ 0", field=name)
+            if (np.diff(table, axis=0) <= 0).any():
+                row = int(np.argmax((np.diff(table, axis=0) <= 0).reshape(len(lux) - 1, -1).any(1)))
+                raise InputError(
+                    f"must rise strictly from row to row, rows {row + 1} and {row + 2} do not",
+                    field=name,
+                )
 
     def linear_of(self, lux: Float, /) -> Float:
         """f: linear camera values (..., 3) in `lux` (..., 3)."""

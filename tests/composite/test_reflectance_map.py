@@ -10,6 +10,7 @@ from andon.composite.per_lux import (
     MID_GREY,
     NOISE_FLOOR,
     map_scale,
+    noise_floor,
     photograph_weight,
 )
 from andon.engines.prepared import prepare
@@ -17,7 +18,7 @@ from andon.errors import InputError
 from andon.files.pictures import write_exr, write_png
 from andon.lamps import DirectionalLamp
 from andon.quantities import CameraFrame
-from andon.responses import SRGB
+from andon.responses import LINEAR, SRGB
 from andon.spaces import View
 from comparison import assert_agree, assert_same_picture
 from worlds import ALL_CODES, scene
@@ -54,6 +55,21 @@ def test_the_weight_is_that_of_two_measurements():
     assert (np.diff(w) > 0).all()
     assert w[0] < 1e-11
     assert w[-1] > 1 - 1e-11
+
+
+@pytest.mark.parametrize(
+    ("response", "step", "floor"),
+    [
+        (SRGB, 1 / 255, NOISE_FLOOR),
+        (LINEAR, 1 / 255, 1 / 255),
+        (LINEAR, 1 / 65535, NOISE_FLOOR),  # the sensor's noise is coarser
+        (LINEAR, 0.0, NOISE_FLOOR),
+    ],
+)
+def test_the_floor_is_the_first_code_of_the_photograph(response, step, floor):
+    dark = np.zeros((*VIEW.shape, 3), np.float32)
+    frame = CameraFrame(dark, VIEW, response, code_step=step)
+    assert noise_floor(frame) == pytest.approx(floor, rel=1e-12)
 
 
 def test_in_strong_light_the_photograph_is_right(engine):

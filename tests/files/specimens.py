@@ -246,6 +246,13 @@ RESPONSE_CSV = b"""encoded,linear_r,linear_g,linear_b
 1,1,1,1
 """
 
+SURFACE_RESPONSE_CSV = b"""# paper
+illuminance_lux,linear_r,linear_g,linear_b
+0,0.001,0.001,0.0012
+120,0.061,0.048,0.03
+480,0.236,0.19,0.113
+"""
+
 CAMERA_YAML = b"""%YAML:1.0
 ---
 image_width: 640
@@ -384,6 +391,7 @@ SPECIMENS: dict[str, Callable[[Path], None]] = {
     "camera.toml": _toml,
     "camera.opencv": _write(CAMERA_YAML),
     "response.csv": _write(RESPONSE_CSV),
+    "surface-response.csv": _write(SURFACE_RESPONSE_CSV),
     "photometry.ies": _write(ies(horizontals=(0, 90, 180)).encode()),
     "photometry.ldt": _write(ldt(symmetry=2).encode()),
     "volume.glb": _volume,

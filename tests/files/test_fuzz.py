@@ -65,7 +65,7 @@ def test_every_registered_reader_has_a_specimen_and_a_kind() -> None:
     assert [reader.name for reader in READERS] == list(SPECIMENS)
     kinds = {"picture", "depth", "mesh", "camera", "response", "photometry", "volume"}
     kinds |= {"exposures", "gaze", "gaps", "maps", "geometry", "illuminance", "radiance"}
-    kinds |= {"harmonics"}
+    kinds |= {"harmonics", "surface-response"}
     assert {reader.kind for reader in READERS} == kinds
 
 

@@ -9,6 +9,7 @@ from andon.errors import InputError
 VIEW = andon.View("pinhole", 8, 6, 5.0, 5.0, 3.5, 2.5)
 LAMP = andon.PointLamp("bulb", np.array([0, 0, -1.0]), np.ones(3))
 PHOTO, DEPTH = np.full((6, 8, 3), 9, np.uint8), np.full((6, 8), 2.0)
+CURVE = andon.SurfaceCurve(np.array([0.0, 100]), np.array([[0.0] * 3, [0.5] * 3]))
 CASES = [
     ("photo", PHOTO.tolist(), r"photo: must be an array \(H, W, 3\), got a list; e\.g\. np\.asarr"),
     ("photo", None, r"photo: must be an array \(H, W, 3\), got None"),
@@ -28,6 +29,13 @@ CASES = [
     ("ambient_lux", "bright", r"ambient_lux: must be a number, .* got 'bright'"),
     ("dimming", "half", r"dimming: must be a number or three channels, got 'half'"),
     ("response", "srgb", r"response: must be an andon\.Response, got 'srgb'; e\.g\."),
+    ("reflectance_map", "rho.png", r"reflectance_map: must be an array \(6, 8, 3\) of linear ρ"),
+    ("reflectance_map", DEPTH, r"reflectance_map: must be an array .* got \(6, 8\)$"),
+    ("curves", "f.csv", r"curves: must be an andon\.SurfaceCurve, or a list of pairs .*'f\.csv'"),
+    ("curves", [CURVE], r"curves\[0\]: must be a pair \(curve, mask\), got a SurfaceCurve"),
+    ("curves", [(None, DEPTH > 0)], r"curves\[0\]: must be an andon\.SurfaceCurve, got None"),
+    ("curves", [(CURVE, DEPTH)], r"curves\[0\]: the mask must be \(6, 8\) bool, got .*float64"),
+    ("curves", [(CURVE, DEPTH < 0)], r"curves\[0\]: the mask selects no pixel"),
     ("photometry", "lux", r"photometry: must be absolute or relative, got 'lux'"),
 ]  # fmt: skip
 

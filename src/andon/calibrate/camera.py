@@ -26,12 +26,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.calibrate.camera_residuals import Residuals, residuals_of
+from andon.capture.align import align
 from andon.capture.brackets import Bracket, check_exposures
 from andon.capture.recovery import CODES, Recovery, recover_curves, seconds_of
 from andon.errors import InputError
 from andon.responses import Response
 
-__all__ = ["CHANNELS", "CameraCalibration", "calibrate_camera", "check_calibration"]
+__all__ = [
+    "CHANNELS",
+    "CameraCalibration",
+    "calibrate_camera",
+    "check_calibration",
+    "check_still",
+]
 
 Float = NDArray[np.float64]
 
@@ -40,11 +47,13 @@ CHANNELS = "red", "green", "blue"
 LEAST_SUPPORT = 4
 # Exposures and g are found in turn, until no exposure moves by more.
 ROUNDS, SETTLED_EV = 12, 0.003
-ROUND_PIXELS = 50_000
+ROUND_PIXELS = 40_000
 # Shutters and apertures keep their stops to a third; what is off by so many stops is no tolerance.
 CONTRADICTING_EV = 1.0
 # A fall of so many standard errors and stops is none of noise.
 FALL_ERRORS, LEAST_FALL_EV = 4.0, 0.1
+# What is left of a motion that alignment found: more than what it leaves of those that it corrects.
+MOST_SHIFT_PX, MOST_TURN_DEGREES = 1.5, 0.3
 # A tenth of the range: no curve explains such photographs.
 MOST_RMS_CODES = 25.0
 
@@ -105,12 +114,35 @@ def calibrate_camera(bracket: Bracket, /) -> CameraCalibration:
     )
 
 
+def check_still(bracket: Bracket, /) -> None:
+    """Refuses photographs that, aligned or not, still lie off each other. Raises `InputError`."""
+    for name, move in zip(bracket.names, align(bracket, "auto")[1], strict=True):
+        x, y = move.shift_px
+        if np.hypot(x, y) > MOST_SHIFT_PX or abs(move.turn_degrees) > MOST_TURN_DEGREES:
+            raise InputError(
+                f"lies {x:+.1f}, {y:+.1f} px off {bracket.names[bracket.middle]}, turned by "
+                f"{move.turn_degrees:+.2f}°, after alignment",
+                file=name,
+                field="--align",
+                remedy="--align auto, or ecc where the camera was turned; or leave it out",
+            )
+
+
 def check_calibration(bracket: Bracket, calibration: CameraCalibration, /) -> None:
     """Refuses a response that its own photographs contradict. Raises `InputError`.
 
     Contradictions: a curve that falls beyond noise, a photograph whose exposure is off by a stop
     and more, a residual that no curve of a camera leaves.
     """
+    _check_times(bracket, calibration.exposure_error_ev)
+    rms = calibration.residuals.rms_codes
+    if rms > MOST_RMS_CODES:
+        raise InputError(
+            f"the photographs contradict each other by {rms:.0f} codes of 255 (RMS): no response "
+            "explains them",
+            field="PHOTOS",
+            remedy="a still scene from one place, or --align auto for a camera that moved",
+        )
     for name, channel in zip(CHANNELS, calibration.recovery.channels, strict=True):
         fall = channel.fall
         if fall is not None and fall.ev > max(FALL_ERRORS * fall.noise_ev, LEAST_FALL_EV):
@@ -121,15 +153,6 @@ def check_calibration(bracket: Bracket, calibration: CameraCalibration, /) -> No
                 field="PHOTOS",
                 remedy="photographs of one light, each developed alike, without local tone mapping",
             )
-    _check_times(bracket, calibration.exposure_error_ev)
-    rms = calibration.residuals.rms_codes
-    if rms > MOST_RMS_CODES:
-        raise InputError(
-            f"the photographs contradict each other by {rms:.0f} codes of 255 (RMS): no response "
-            "explains them",
-            field="PHOTOS",
-            remedy="a still scene from one place, or --align auto for a camera that moved",
-        )
 
 
 def _check_times(bracket: Bracket, errors: Float) -> None:
@@ -159,10 +182,10 @@ def _exposure_errors(bracket: Bracket) -> Float:
         fitted = replace(bracket, seconds=2 ** (logs + errors))
         curves = recover_curves(fitted).curves
         bias = residuals_of(fitted, curves, pixels=ROUND_PIXELS).exposure_ev
-        step = np.nan_to_num(bias)
-        errors = errors + step
-        errors = errors - np.polyval(np.polyfit(logs, errors, 1), logs)
-        if np.abs(step).max() < SETTLED_EV:
+        found = errors + np.nan_to_num(bias)
+        found = found - np.polyval(np.polyfit(logs, found, 1), logs)
+        step, errors = np.abs(found - errors).max(), found
+        if step < SETTLED_EV:
             break
     known = np.isfinite(bias)
     errors = np.where(known, errors - _line_of_most(logs[known], errors[known])(logs), np.nan)

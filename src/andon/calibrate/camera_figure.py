@@ -17,7 +17,7 @@ Float = NDArray[np.float64]
 COLOURS = ((190, 40, 30), (20, 130, 60), (40, 80, 190))
 # The same on paper, as if seen through: thousands of points must not hide their curve.
 PALE = ((236, 176, 168), (168, 214, 180), (178, 192, 236))
-POINTS = 3000
+POINTS = 1500
 # Darker exposures are the curve's own invention where no code stands for them.
 LEAST_EV, MOST_EV = -12.0, 6.0
 BAND_CODES = 8
@@ -44,9 +44,9 @@ def _chosen(calibration: CameraCalibration, channel: int) -> tuple[Float, Float,
     codes = residuals.codes[..., channel][known].astype(float)
     exposure = residuals.log_exposure[..., channel][known] / np.log(2)
     left = codes - residuals.predicted[..., channel][known]
-    order = np.argsort(codes, kind="stable")
-    levels = np.random.default_rng(0).uniform(0, 255, POINTS)
-    pick = order[np.clip(np.searchsorted(codes[order], levels), 0, len(order) - 1)]
+    rarity = 1 / np.bincount(codes.astype(int), minlength=256)[codes.astype(int)]
+    count, generator = min(POINTS, len(codes)), np.random.default_rng(0)
+    pick = generator.choice(len(codes), count, replace=False, p=rarity / rarity.sum())
     return exposure[pick], codes[pick], left[pick]
 
 
@@ -59,8 +59,9 @@ def _curves(calibration: CameraCalibration) -> Panel:
     for c, name in enumerate(CHANNELS):
         exposure, code, _ = _chosen(calibration, c)
         points.append(Points("", PALE[c], _within(exposure, low, high), code))
-        shown = np.where(_is_supported(calibration, c), codes, np.nan)
-        lines.append(Curve(name, COLOURS[c], _within(curves[:, c], low, high), shown, 2.5))
+        inside = (curves[:, c] >= low) & (curves[:, c] <= high)
+        shown = np.where(_is_supported(calibration, c) & inside, codes, np.nan)
+        lines.append(Curve(name, COLOURS[c], curves[:, c], shown, 2.5))
     return Panel(
         "Response of the camera: code over exposure, of each pixel as its other photographs say",
         "exposure, EV from that of code 128 (relative)",
@@ -88,14 +89,15 @@ def _within(values: Float, low: float, high: float) -> Float:
 
 def _residuals(calibration: CameraCalibration) -> Panel:
     residuals = calibration.residuals
-    reach = float(max(10.0, np.ceil(4 * residuals.rms_codes / 10) * 10))
+    bands = [_bands(calibration, c) for c in range(3)]
+    most = max(float(np.nanmax(rms, initial=0.0)) for _, rms in bands)
+    reach = float(max(10.0, np.ceil(most / 10) * 10))
     points: list[Points] = []
     lines = [Curve("", INK, np.array([0.0, 255.0]), np.zeros(2), 1.0)]
     for c, name in enumerate(CHANNELS):
         _, code, left = _chosen(calibration, c)
         points.append(Points("", PALE[c], code - left, _within(left, -reach, reach)))
-        middle, rms = _bands(calibration, c)
-        lines.append(Curve(f"{name}: RMS", COLOURS[c], middle, rms, 2.0))
+        lines.append(Curve(f"{name}: RMS", COLOURS[c], *bands[c], 2.0))
     return Panel(
         f"What is left: {residuals.rms_codes:.1f} codes RMS, {residuals.median_codes:.1f} in the "
         f"median, {residuals.rms_ev:.2f} EV RMS",
@@ -117,8 +119,8 @@ def _bands(calibration: CameraCalibration, channel: int) -> tuple[Float, Float]:
     band = (predicted[known] // BAND_CODES).astype(int)
     count = np.bincount(band, minlength=256 // BAND_CODES)
     squares = np.bincount(band, left**2, 256 // BAND_CODES)
-    rms = np.sqrt(squares / np.maximum(count, 1))
-    middle = (np.arange(len(rms)) + 0.5) * BAND_CODES
+    rms: Float = np.sqrt(squares / np.maximum(count, 1))
+    middle = (np.arange(len(rms), dtype=np.float64) + 0.5) * BAND_CODES
     return middle, np.where(count >= 20, rms, np.nan)
 
 

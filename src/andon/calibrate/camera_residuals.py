@@ -57,7 +57,8 @@ def residuals_of(bracket: Bracket, curves: Float, /, *, pixels: int = PIXELS) ->
     logs = np.log(seconds_of(bracket))
     channels = [_channel(codes[..., c], curves[:, c], logs) for c in range(3)]
     expected, light = (np.stack(part, axis=-1) for part in zip(*channels, strict=True))
-    predicted = np.where((codes > 0) & (codes < CODES - 1), expected, np.nan)
+    predicted: Float = np.where((codes > 0) & (codes < CODES - 1), expected, np.nan)
+    left: Float = np.asarray(codes, np.float64) - predicted
     measured = np.stack([curves[codes[..., c], c] for c in range(3)], axis=-1)
     tells = (expected >= TELLING_CODES[0]) & (expected <= TELLING_CODES[1])
     stops = np.where(tells, (measured - light) / np.log(2), np.nan)
@@ -65,10 +66,10 @@ def residuals_of(bracket: Bracket, curves: Float, /, *, pixels: int = PIXELS) ->
         codes,
         predicted,
         light,
-        float(np.nanmedian(np.abs(predicted - codes))),
-        _rms(predicted - codes),
+        float(np.nanmedian(np.abs(left))),
+        _rms(left),
         _rms(np.where(np.isfinite(predicted), stops, np.nan)),
-        np.array([_rms(predicted[:, k] - codes[:, k]) for k in range(len(logs))]),
+        np.array([_rms(left[:, k]) for k in range(len(logs))]),
         np.array([_rms(stops[:, k]) for k in range(len(logs))]),
         _exposures(stops),
     )
@@ -99,7 +100,7 @@ def _channel(codes: NDArray[np.int64], curve: Float, logs: Float) -> tuple[Float
     exposure = (light.sum(axis=1, keepdims=True) - light) / np.where(known, others, np.nan) + logs
     # Equal values of a curve that was made to rise: interpolation wants them apart.
     rising = curve + 1e-9 * np.arange(CODES)
-    predicted = np.interp(exposure, rising, np.arange(CODES, dtype=float))
+    predicted = np.asarray(np.interp(exposure, rising, np.arange(CODES, dtype=float)), np.float64)
     return np.where(known, predicted, np.nan), exposure
 
 
@@ -111,4 +112,6 @@ def _exposures(stops: Float) -> Float:
         telling = stops[:, k, c][np.isfinite(stops[:, k, c])]
         if len(telling) >= LEAST_TELLING:
             found[k, c] = np.median(telling)
-    return np.array([np.median(row[np.isfinite(row)]) if np.isfinite(row).any() else np.nan for row in found])
+    return np.array(
+        [np.median(row[np.isfinite(row)]) if np.isfinite(row).any() else np.nan for row in found]
+    )

@@ -100,7 +100,10 @@ def align(bracket: Bracket, method: Alignment, /) -> tuple[Bracket, tuple[Move, 
     if method == "auto":
         found = [STILL if corner_motion_px(m, shape) < STILL_PX else m for m in found]
     codes, seen = zip(
-        *(moved_picture(c, s, m) for c, s, m in zip(bracket.codes, bracket.seen, found, strict=True)),
+        *(
+            moved_picture(c, s, m)
+            for c, s, m in zip(bracket.codes, bracket.seen, found, strict=True)
+        ),
         strict=True,
     )
     return replace(bracket, codes=codes, seen=seen), tuple(_described(m, shape) for m in found)

@@ -70,6 +70,4 @@ def frame_from_picture(
         codes = np.asarray(clipped, np.uint8)
         clipped = undistort(codes, view, method="nearest") > 0
     view = replace(view, distortion=())
-    return CameraFrame(
-        linear, view, response, luminance_per_unit, time_seconds, clipped, code_step
-    )
+    return CameraFrame(linear, view, response, luminance_per_unit, time_seconds, clipped, code_step)

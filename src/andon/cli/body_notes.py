@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.engines.real_shells import RealShells
 from andon.lamps import Body, Lamp
 from andon.lamps.shells.beams import solid_angles
 from andon.quantities import Surface
 from andon.rays import RayScene, face_normals
 
-__all__ = ["notes_on_bodies"]
+__all__ = ["notes_on_bodies", "notes_on_shells"]
 
 # A sheet takes at most half of all directions; what takes more is around the camera, a lantern
 # that is open above and below included.
@@ -43,6 +44,23 @@ def notes_on_bodies(surface: Surface, bodies: Sequence[Body], lamps: Sequence[La
                 f"drawn = false hides it{remedy}"
             )
     return notes
+
+
+# A shell of which less is found than this is not where the geometry has it.
+NOTABLE_FOUND = 0.5
+
+
+def notes_on_shells(shells: RealShells | None, view_name: str, bodies: Sequence[Body]) -> list[str]:
+    """One line for each real shell that is seen, but not found in the geometry."""
+    if shells is None:
+        return []
+    return [
+        f"of the shell of {bodies[number].name!r} {share:.0%} are where the geometry has a surface "
+        f"within {shells.margins_m[bodies[number].name]:.2g} m, or a hole: check the lamp's "
+        "position and the shell's form, or state shell.margin_m"
+        for number, share in shells.views[view_name].seen_share.items()
+        if share is not None and share < NOTABLE_FOUND
+    ]
 
 
 def _surrounds(body: Body, eye: NDArray[np.float64]) -> bool:

@@ -8,8 +8,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from andon.cli.console import check_apart, note
 from andon.errors import InputError
 
@@ -69,6 +67,8 @@ def read_bracket(options: BracketOptions, outputs: Sequence[Path | None]) -> Bra
 
 def _codes(picture: Picture, path: Path) -> Any:
     """(H, W, 3) uint8; of 16 bits the upper 8."""
+    import numpy as np
+
     if picture.encoding == "linear":
         raise InputError(
             "is light already, and has no exposure",
@@ -121,6 +121,8 @@ def _stated_seconds(pictures: list[Picture]) -> list[float] | None:
 
     Proportional to seconds·ISO/N². What not all state is taken to be the same in all.
     """
+    import numpy as np
+
     facts = [picture.attributes for picture in pictures]
     if not all("exposure_seconds" in fact for fact in facts):
         return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from andon.cli import calibrate_response
+from andon.cli import calibrate_ambient, calibrate_response, calibrate_surface
 
 __all__ = ["calibrate_app"]
 
@@ -18,3 +18,5 @@ def _calibrate() -> None:
 
 # In the order of ``andon calibrate --help``.
 calibrate_app.command("response")(calibrate_response.response)
+calibrate_app.command("surface")(calibrate_surface.surface)
+calibrate_app.command("ambient")(calibrate_ambient.ambient)

@@ -76,12 +76,13 @@ def run(typed: BracketOptions, out: Path, figure: Path | None, facts: Path | Non
             check_writable(path, (suffix,), field)
     check_bracket(typed, outputs)
     bracket = read_bracket(typed, outputs)
-    from andon.calibrate.camera import calibrate_camera, check_calibration
+    from andon.calibrate.camera import calibrate_camera, check_calibration, check_still
     from andon.capture.brackets import check_exposures
     from andon.files.responses import write_response
 
     check_exposures(bracket)
     bracket, moves = aligned_bracket(bracket, typed.align)
+    check_still(bracket)
     calibration = calibrate_camera(bracket)
     check_calibration(bracket, calibration)
     write_response(out, calibration.response)
@@ -193,8 +194,10 @@ def _signed(value: float) -> str:
 def _on_exposures(bracket: Bracket, errors: Any) -> list[str]:
     if len(bracket.names) < 3:
         return ["two photographs cannot tell whether their times are true: take a third"]
+    doubt = "; of three photographs it may be another one's time" if len(errors) == 3 else ""
     return [
         f"{Path(name).name} is exposed {error:+.2f} EV against what is stated, by what it shows"
+        f"{doubt}"
         for name, error in zip(bracket.names, errors, strict=True)
         if abs(error) > NOTED_EV
     ]

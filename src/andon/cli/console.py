@@ -111,6 +111,9 @@ def print_report(
     if report.uncovered_share is not None:
         share = f"{1 - report.uncovered_share:.1%}"
         table.add_row("baked light", f"maps see {share} of the surface")
+    if report.beyond_curve_share is not None:
+        share = f"{1 - report.beyond_curve_share:.1%}"
+        table.add_row("curves", f"{share} of their pixels lie within what was measured")
     if report.ignored_tables:
         table.add_row("not drawn", f"{', '.join(report.ignored_tables)} (later versions)")
     Console(stderr=True).print(table)

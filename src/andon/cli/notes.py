@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.cli.body_notes import notes_on_bodies
+from andon.cli.body_notes import notes_on_bodies, notes_on_shells
 from andon.engines.prepared import Prepared
 from andon.lamps import Lamp, SpotLamp
 from andon.pipeline import Frame
@@ -26,6 +26,8 @@ LIKELY_DEPTHS_M = (0.05, 200.0)
 SPARSE = 7
 # Of the surface: smaller gaps lie along the rims of things, and nobody finds them.
 NOTABLE_UNCOVERED = 0.002
+# Of the pixels with a curve: a few lie outside it by noise alone.
+NOTABLE_BEYOND = 0.005
 # Fields of lamps that say how much light there is.
 LIGHT_UNITS = ("_cd", "_lux", "_cd_m2")
 
@@ -35,14 +37,17 @@ def notes_on(
 ) -> list[str]:
     """One line each: what was found, and what can be done about it."""
     surface, model = frame.surface, prepared.surface
+    bodies = prepared.bodies(time_seconds)
     return [
         *model.notes,
         *_on_depth(surface, has_photograph),
         *_on_objects(surface, prepared, time_seconds, has_photograph),
         *_on_lamps(surface, prepared, time_seconds),
-        *notes_on_bodies(surface, prepared.bodies(time_seconds), prepared.lamps(time_seconds)),
+        *notes_on_bodies(surface, bodies, prepared.lamps(time_seconds)),
+        *notes_on_shells(prepared.shells, surface.view.name, bodies),
         *_on_lift(model),
         *_on_baked(frame),
+        *_on_curves(frame),
     ]
 
 
@@ -181,6 +186,18 @@ def _on_baked(frame: Frame) -> list[str]:
     return [
         f"{baked.uncovered_share:.1%} of the surface is seen by no illuminance map; but for rims "
         "it gets no baked light: --uncovered shows where; another [[baked.camera]] sees it"
+    ]
+
+
+def _on_curves(frame: Frame) -> list[str]:
+    """Light that no shot of a surface's curve was taken in."""
+    share = frame.report.beyond_curve_share
+    if share is None or share < NOTABLE_BEYOND:
+        return []
+    return [
+        f"{share:.1%} of the pixels with a curve are darker or brighter than it was measured, as "
+        "captured or as relit: there it goes straight on; --confidence shows where; more shots for "
+        "andon calibrate surface widen it"
     ]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -24,7 +25,7 @@ PREDICTIONS = {
     "fitted": "fitted",
     "unchanged": "unchanged",
     "gain_one": "best gain",
-    "gain_channels": "best gains of channels",
+    "gain_channels": "gain of each channel",
 }
 REGIONS = ("inside", "outside", "whole")
 
@@ -171,30 +172,48 @@ def print_fit(fit: LampFit) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    table = Table(box=None, show_header=False, pad_edge=False)
-    for light in fit.lamps:
-        table.add_row("fitted", _lamp_text(fit, light))
-    if fit.dimming is not None:
-        table.add_row("fitted", f"what is left of E0: {_factors(fit.dimming)} of the scene's")
-    if fit.fill is not None:
-        sky, ground = (_triple(lux) for lux in (fit.fill.sky_lux, fit.fill.ground_lux))
-        table.add_row(
-            "fitted",
-            f"bounce: {fit.fill.share:.0%} of the added light; from above {sky} lx, from below "
-            f"{ground} lx ({fit.photometry})",
-        )
-    if fit.responses:
-        tried = sorted(fit.responses.items(), key=lambda item: item[1])
-        table.add_row("response", ", ".join(f"{name} {rmse:.4f}" for name, rmse in tried[:4]))
-    for region in REGIONS:
-        if region in fit.measures:
-            table.add_row(*_errors(region, fit.measures[region]))
-            bare = fit.measures.get(f"{region}_without_holes")
-            if bare is not None and bare["fitted"].pixels != fit.measures[region]["fitted"].pixels:
-                table.add_row(*_errors(f"{region}, no holes", bare))
-    Console(stderr=True).print(table)
+    console = Console(stderr=True)
+    values = Table(box=None, show_header=False, pad_edge=False)
+    for row in _rows(fit):
+        values.add_row(*row)
+    console.print(values)
+    errors = Table(box=None, pad_edge=False)
+    for head in ("error, PSNR and mean ΔE₀₀", *PREDICTIONS.values()):
+        errors.add_column(head)
+    for name, measures in _regions(fit):
+        parts = (measures[key] for key in PREDICTIONS)
+        errors.add_row(name, *(f"{m.psnr_db:.2f} dB  {m.delta_e_mean:.2f}" for m in parts))
+    console.print(errors)
     for line in fit.notes:
         note(line)
+
+
+def _rows(fit: LampFit) -> list[tuple[str, str]]:
+    rows = [("fitted", _lamp_text(fit, light)) for light in fit.lamps]
+    if fit.dimming is not None:
+        text = f"dimming: {_factors(fit.dimming)} of the scene's"
+        rows.append(("fitted", f"{text}; of another exposure, lamps give that much less too"))
+    if fit.fill is not None:
+        sky, ground = (_triple(lux) for lux in (fit.fill.sky_lux, fit.fill.ground_lux))
+        text = f"from above {sky} lx, from below {ground} lx ({fit.photometry})"
+        rows.append(("fitted", f"bounce: {text}; {fit.fill.share:.0%} of the added light"))
+    if fit.responses:
+        tried = sorted(fit.responses.items(), key=lambda item: item[1])
+        best = ", ".join(f"{name} {rmse:.4f}" for name, rmse in tried[:4])
+        rows.append(("response", f"{tried[0][0]}; RMSE of codes: {best}"))
+    return rows
+
+
+def _regions(fit: LampFit) -> list[tuple[str, Mapping[str, Measures]]]:
+    """Regions in their order; without holes where there are any."""
+    found: list[tuple[str, Mapping[str, Measures]]] = []
+    for region in REGIONS:
+        own, bare = fit.measures.get(region), fit.measures.get(f"{region}_without_holes")
+        if own is not None:
+            found.append((region, own))
+        if own is not None and bare and bare["fitted"].pixels != own["fitted"].pixels:
+            found.append((f"{region}, no holes", bare))
+    return found
 
 
 def _lamp_text(fit: LampFit, light: FittedLight) -> str:
@@ -221,12 +240,3 @@ def _factors(light: FittedLight) -> str:
         return f"{light.factor[0]:.4g} ± {light.error[0]:.1g}"
     parts = zip(light.factor, light.error, strict=True)
     return "[" + ", ".join(f"{factor:.4g} ± {error:.1g}" for factor, error in parts) + "]"
-
-
-def _errors(region: str, measures: Any) -> tuple[str, str]:
-    of: dict[str, Measures] = dict(measures)
-    parts = [
-        f"{words} {of[name].psnr_db:.2f} dB, ΔE₀₀ {of[name].delta_e_mean:.2f}"
-        for name, words in PREDICTIONS.items()
-    ]
-    return f"error {region}", " · ".join(parts)

@@ -16,7 +16,13 @@ reflectance × E     geometry, an albedo estimate    the estimate takes shadow f
 learned             a network                       no unit survives
 ==================  ==============================  =====================================
 
+Where a surface was measured (`SurfaceCurve`: f, what the camera delivers of it in E lux) the ratio
+is one of its light, not of camera values: ``f_c(f_c⁻¹(RGB_c) · (dimming_c·E0_c + ΔE_c)/E0_c)``; f
+undoes what a camera's own response g leaves (tone, black level, haze). Where E0 is too weak for the
+photograph to tell a reflectance, a stated picture of ρ takes the added light (`per_lux`).
+
 Holes keep their captured light (dimmed, since dimming needs no geometry): nothing is guessed.
 
-Source: the relighting paper, sections 2.1 and figure 1 (照度-RGB モデル).
+Source: the relighting paper, sections 2.1 and figure 1
+(照度-RGB モデル: illuminance–RGB model).
 """

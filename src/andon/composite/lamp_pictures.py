@@ -179,7 +179,7 @@ class LampPictures:
             distance = float(np.linalg.norm(reach))
             record = DISC_RECORD.pack(
                 direction=reach / distance,
-                distance_m=distance,
+                distance_m=distance - disc.glass_m,
                 linear=disc.luminance_cd_m2 / luminance_per_unit,
                 radius_radians=np.arcsin(min(1.0, disc.radius_m / distance)),
             )

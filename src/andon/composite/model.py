@@ -9,6 +9,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.responses import SurfaceCurve
+
 __all__ = ["Ambient", "MeasuredSurface"]
 
 
@@ -56,6 +58,10 @@ class MeasuredSurface:
     ----------
     reflectance : (H, W, 3) ρ ≥ 0, linear Rec.709, in the scale that the photograph shows it in
         (`map_scale`): π·luminance_per_unit·captured/E0; None where only the photograph tells it.
+    curves : f of each surface that has one.
+    curve_of : (H, W) int16, which of `curves` a pixel has, −1: none; None without curves.
     """
 
     reflectance: NDArray[np.float64] | None = None
+    curves: tuple[SurfaceCurve, ...] = ()
+    curve_of: NDArray[np.int16] | None = None

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.composite.curves import dimmed_light, linear_of
 from andon.composite.model import Ambient, MeasuredSurface
 from andon.composite.per_lux import per_lux
 from andon.lamps import Lamp, PointLamp, SphereLamp, intensity_cd
@@ -38,17 +39,15 @@ def relit_linear(
 ) -> Float:
     """Linear camera values (H, W, 3) under the new light: captured × (dimming·E0 + ΔE)/E0.
 
-    Where light is taken away ΔE is negative; no light at all is the least that is left.
+    Where `measured` has a curve f that is f(f⁻¹(captured) × (dimming·E0 + ΔE)/E0). Where light is
+    taken away ΔE is negative; no light at all is the least that is left.
     """
-    captured = np.asarray(frame.linear, np.float64)
-    dimming, e0 = np.asarray(ambient.dimming), ambient.lux_of(frame.view.name)
-    if ambient.dimming_mode == "linear" and measured is None:
-        return captured * np.maximum(dimming + added_lux / e0, 0)
-    if ambient.dimming_mode == "linear":
-        dimmed = dimming * captured
-    else:
-        dimmed = frame.response.decode(dimming * frame.response.encode(captured))
-    return np.maximum(dimmed + per_lux(frame, ambient, measured) * added_lux, 0)
+    if measured is None and ambient.dimming_mode == "linear":
+        captured, e0 = np.asarray(frame.linear, np.float64), ambient.lux_of(frame.view.name)
+        return captured * np.maximum(np.asarray(ambient.dimming) + added_lux / e0, 0)
+    dimmed = dimmed_light(frame, ambient, measured)
+    light = dimmed + per_lux(frame, ambient, measured) * added_lux
+    return linear_of(np.maximum(light, np.minimum(dimmed, 0)), measured)
 
 
 def unlit_linear(
@@ -116,11 +115,15 @@ def lamp_luminance(lamp: PointLamp, eye: Float, /) -> Float:
 
 @dataclass(frozen=True)
 class Disc:
-    """A lamp as it is drawn: `position_m` (3,), `radius_m`, and `luminance_cd_m2` (3,)."""
+    """A lamp as it is drawn: `position_m` (3,), `radius_m`, and `luminance_cd_m2` (3,).
+
+    What is nearer to its middle than `glass_m` does not hide it.
+    """
 
     position_m: Float
     radius_m: float
     luminance_cd_m2: Float
+    glass_m: float = 0.0
 
 
 def disc_of(lamp: Lamp, eye: Float, /) -> Disc | None:
@@ -129,10 +132,11 @@ def disc_of(lamp: Lamp, eye: Float, /) -> Disc | None:
     Lamps with an area are drawn as the bodies that they are; a ball without one as a disc.
     """
     if isinstance(lamp, SphereLamp) and lamp.drawn and not lamp.body:
-        return Disc(lamp.position_m, lamp.radius_m, lamp.luminance_cd_m2)
+        return Disc(lamp.position_m, lamp.radius_m, lamp.luminance_cd_m2, lamp.glass_m)
     if not isinstance(lamp, PointLamp) or lamp.visible_radius_m <= 0:
         return None
-    return Disc(lamp.position_m, lamp.visible_radius_m, lamp_luminance(lamp, eye))
+    luminance = lamp_luminance(lamp, eye)
+    return Disc(lamp.position_m, lamp.visible_radius_m, luminance, lamp.glass_m)
 
 
 def drawn_lamps(lamps: Sequence[Lamp], eye: Float, /) -> list[Disc]:
@@ -161,7 +165,9 @@ def draw_lamps(luminance: Float, surface: Surface, lamps: Sequence[Lamp], /) -> 
         away = float(np.linalg.norm(reach))
         radius = np.arcsin(min(1.0, disc.radius_m / away))
         angle = _angle_between(directions, reach / away)
-        cover = np.clip((radius - angle) / pixel_angle + 0.5, 0, 1) * (away < distance)
+        cover = np.clip((radius - angle) / pixel_angle + 0.5, 0, 1) * (
+            away - disc.glass_m < distance
+        )
         luminance = luminance + cover[..., None] * (disc.luminance_cd_m2 - luminance)
     return luminance
 

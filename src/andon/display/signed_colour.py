@@ -66,10 +66,12 @@ def _bar(height: int, top: float, unit: str) -> Rgb:
     image.paste(Image.fromarray(scale), (8, above))
     draw, font = ImageDraw.Draw(image), ImageFont.load_default(size=12)
     step = next((s for s in (0.5, 1.0, 2.0) if s / 2 * (length - 1) >= LABEL_PX), 2.0)
-    for share in np.arange(1, -1 - step / 2, -step):
+    for share in np.round(np.arange(1, -1 - step / 2, -step), 6):
         y = above + (1 - share) / 2 * (length - 1)
         draw.line([(24, y), (28, y)], fill=INK)
-        draw.text((30, y), f"{share * top:+.3g}" if share else "0", fill=INK, font=font, anchor="lm")
+        draw.text(
+            (30, y), f"{share * top:+.3g}" if share else "0", fill=INK, font=font, anchor="lm"
+        )
     if above == ABOVE_PX:
         draw.text((8, 10), unit, fill=INK, font=font, anchor="lm")
     return np.asarray(image)

@@ -43,7 +43,7 @@ from andon.transport.direct import reference as direct
 from andon.transport.direct.casters import REAL, Casters, ShadowRays
 from andon.transport.probes.light import probe_illuminance
 
-__all__ = ["LEAST_SHARE", "ambient_of", "stated_ambient"]
+__all__ = ["LEAST_SHARE", "ambient_of", "source_lux", "stated_ambient"]
 
 Float = NDArray[np.float64]
 Notes = tuple[str, ...]
@@ -69,7 +69,7 @@ def ambient_of(
         field = "harmonics"
         lux_on, notes = _of_harmonics(scene, table.harmonics)
     else:
-        field, lux_on, notes = "rest_lux", _of_sources(scene, views, model), ()
+        field, lux_on, notes = "rest_lux", _of_sources(scene, model), ()
     real = replace(model, objects=SurfaceModel().objects, objects_table=(), movers=())
     seen = {
         name: surface.see(real, replace(view.undistorted(), name=name))
@@ -166,25 +166,34 @@ def _of_harmonics(scene: Scene, reference: str) -> tuple[Callable[[Surface], Flo
     return lambda seen: irradiance(smooth, seen.normal), notes
 
 
-def _of_sources(
-    scene: Scene, views: Mapping[str, View], model: SurfaceModel
-) -> Callable[[Surface], Float]:
+def _of_sources(scene: Scene, model: SurfaceModel) -> Callable[[Surface], Float]:
     """The rest and the direct light of known sources, hidden by the real surfaces alone."""
     assert scene.ambient is not None
     rest = np.broadcast_to(np.asarray(scene.ambient.rest_lux, float), 3)
-    steady = tuple(source.model_copy(update={"flicker": None}) for source in scene.ambient.source)
-    still = scene.model_copy(
-        update={"ambient": scene.ambient.model_copy(update={"source": steady})}
-    )
+    return lambda seen: rest + sum(source_lux(scene, model, seen).values(), np.zeros(3))
+
+
+def source_lux(scene: Scene, model: SurfaceModel, seen: Surface, /) -> dict[str, Float]:
+    """Name of each [[ambient.source]] → (H, W, 3) lux of its direct light on the real surface.
+
+    Shadows are those of the real surfaces, flicker is at its mean, holes are 0. Raises `InputError`
+    for a source that cannot light this surface.
+    """
+    table = scene.ambient
+    if table is None or not table.source:
+        return {}
+    steady = tuple(source.model_copy(update={"flicker": None}) for source in table.source)
+    still = scene.model_copy(update={"ambient": table.model_copy(update={"source": steady})})
     lamps = known_sources(still, 0.0)
-    check_lamps(scene, lamps, model, next(iter(views.values())).position)
+    check_lamps(scene, lamps, model, seen.view.position)
     rays = ShadowRays(Casters(((REAL, model.occluder.geometry),)))
-
-    def lux_on(seen: Surface) -> Float:
-        bias_m = np.full(seen.view.shape, model.bias.real_m)
-        return rest + direct.illuminate(seen, lamps, rays, bias_m=bias_m)
-
-    return lux_on
+    bias_m = np.full(seen.view.shape, model.bias.real_m)
+    return {
+        source.name: direct.illuminate(
+            seen, [lamp for lamp in lamps if lamp.owner == source.name], rays, bias_m=bias_m
+        )
+        for source in table.source
+    }
 
 
 def _map_lux(scene: Scene, reference: str, views: Mapping[str, View]) -> Float:

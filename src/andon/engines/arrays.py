@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.capture.still import frame_from_picture
-from andon.composite.model import Ambient, MeasuredSurface
-from andon.composite.per_lux import map_scale
-from andon.engines.measured import checked_reflectance
+from andon.composite.model import Ambient
+from andon.engines.array_checks import described, numbers
+from andon.engines.measured_arrays import measured_arrays
 from andon.engines.prepared import Prepared
 from andon.errors import InputError
 from andon.files.pictures import Picture
 from andon.lamps import AnyAreaLamp, Lamp, body_of
-from andon.quantities import CameraFrame, Photometry, photometric
+from andon.quantities import Photometry, photometric
 from andon.responses import Response
 from andon.spaces import View
 from andon.surface.depth import DepthEncoding, depth_from_raw
@@ -37,6 +37,7 @@ def prepare_arrays(
     response: Response,
     photometry: Photometry,
     reflectance_map: Any = None,
+    curves: Any = (),
 ) -> Prepared:
     """See `andon.relight`."""
     _check_types(view, lamps, response, photometry)
@@ -52,7 +53,7 @@ def prepare_arrays(
         response,
         luminance_per_unit=float(photometric(ambient.mean_lux)) / np.pi,
     )
-    measured = _measured(reflectance_map, frame, ambient)
+    measured = measured_arrays(reflectance_map, curves, frame, ambient)
     shining = tuple(_with_a_body(lamp) for lamp in lamps)
     bodies = tuple(body_of(x) for x in lamps if isinstance(x, AnyAreaLamp) and x.drawn)
     return Prepared(
@@ -81,7 +82,7 @@ def listed(lamps: Any, /) -> tuple[Any, ...]:
     if isinstance(lamps, list | tuple):
         return tuple(cast("list[Any]", lamps))
     raise InputError(
-        f"must be a list of lamps, got {_described(lamps)}",
+        f"must be a list of lamps, got {described(lamps)}",
         field="lamps",
         remedy="write [lamp], also for one",
     )
@@ -91,7 +92,7 @@ def _check_types(view: Any, lamps: tuple[Any, ...], response: Any, photometry: A
     """What a type checker would have said, for those who use none."""
     if not isinstance(view, View):
         raise InputError(
-            f"must be an andon.View, got {_described(view)}",
+            f"must be an andon.View, got {described(view)}",
             field="view",
             remedy='e.g. andon.View("pinhole", width, height, fx, fy, cx, cy)',
         )
@@ -100,44 +101,24 @@ def _check_types(view: Any, lamps: tuple[Any, ...], response: Any, photometry: A
     for index, lamp in enumerate(lamps):
         if not isinstance(lamp, get_args(Lamp)):
             raise InputError(
-                f"must be a lamp, got {_described(lamp)}",
+                f"must be a lamp, got {described(lamp)}",
                 field=f"lamps[{index}]",
                 remedy="e.g. andon.PointLamp(name, position_m, intensity_cd)",
             )
     if not isinstance(response, Response):
         raise InputError(
-            f"must be an andon.Response, got {_described(response)}",
+            f"must be an andon.Response, got {described(response)}",
             field="response",
             remedy='e.g. andon.Response("srgb")',
         )
     if photometry not in get_args(Photometry):
         words = " or ".join(get_args(Photometry))
-        raise InputError(f"must be {words}, got {_described(photometry)}", field="photometry")
-
-
-def _described(value: Any) -> str:
-    """A value of any type for a message: what it is, and short ones as they are."""
-    if hasattr(value, "dtype"):
-        return f"{np.shape(value)} {value.dtype}"
-    if value is None or isinstance(value, str | int | float):
-        return repr(value)[:40]
-    return f"a {type(value).__name__}"
-
-
-def _numbers(values: Any, field: str, wanted: str) -> NDArray[np.float64]:
-    """`values` as float64. Raises `InputError` for what is no array of real numbers."""
-    try:
-        found = np.asarray(values)
-    except (ValueError, TypeError):  # lists of unequal lengths
-        found = np.empty(0, object)
-    if found.dtype.kind not in "biuf":
-        raise InputError(f"must be {wanted}, got {_described(values)}", field=field)
-    return found.astype(np.float64)
+        raise InputError(f"must be {words}, got {described(photometry)}", field="photometry")
 
 
 def _depth(depth_m: Any, view: View) -> NDArray[np.float64]:
     wanted = f"an array ({view.height}, {view.width}) of metres"
-    depth = _numbers(depth_m, "depth_m", wanted)
+    depth = numbers(depth_m, "depth_m", wanted)
     if depth.shape != view.shape:
         raise InputError(
             f"must be {wanted}, the view's (height, width), got {depth.shape}",
@@ -150,7 +131,7 @@ def _depth(depth_m: Any, view: View) -> NDArray[np.float64]:
 def _picture(photo: Any) -> Picture:
     if not hasattr(photo, "__array__"):
         raise InputError(
-            f"must be an array (H, W, 3), got {_described(photo)}",
+            f"must be an array (H, W, 3), got {described(photo)}",
             field="photo",
             remedy="e.g. np.asarray(photo, np.uint8)",
         )
@@ -169,7 +150,7 @@ def _picture(photo: Any) -> Picture:
 
 
 def _lux(ambient_lux: Any, view: View) -> NDArray[np.float64]:
-    lux = _numbers(ambient_lux, "ambient_lux", "a number, three channels or (H, W, 3)")
+    lux = numbers(ambient_lux, "ambient_lux", "a number, three channels or (H, W, 3)")
     if lux.shape not in ((), (3,), (*view.shape, 3)):
         raise InputError(
             f"must be a number, three channels or (H, W, 3), got {lux.shape}", field="ambient_lux"
@@ -179,20 +160,8 @@ def _lux(ambient_lux: Any, view: View) -> NDArray[np.float64]:
     return lux if lux.ndim == 3 else np.broadcast_to(lux, 3).copy()
 
 
-def _measured(reflectance_map: Any, frame: CameraFrame, ambient: Ambient) -> MeasuredSurface | None:
-    if reflectance_map is None:
-        return None
-    view = frame.view
-    wanted = f"an array ({view.height}, {view.width}, 3) of linear ρ"
-    rho = _numbers(reflectance_map, "reflectance_map", wanted)
-    if rho.shape != (*view.shape, 3):
-        raise InputError(f"must be {wanted}, got {rho.shape}", field="reflectance_map")
-    rho = checked_reflectance(rho, "reflectance_map")
-    return MeasuredSurface(map_scale(rho, frame, ambient) * rho)
-
-
 def _dimming(dimming: Any) -> tuple[float, float, float]:
-    share = _numbers(dimming, "dimming", "a number or three channels")
+    share = numbers(dimming, "dimming", "a number or three channels")
     if share.shape not in ((), (3,)):
         raise InputError(f"must be a number or three channels, got {share.shape}", field="dimming")
     r, g, b = np.broadcast_to(share, 3)

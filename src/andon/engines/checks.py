@@ -36,8 +36,8 @@ def check_lamps(
                 remedy="use directional, sky or hemisphere, or give a depth or a mesh",
             )
         # Areas may be let into a wall; points may not.
-        may_be_inside = not isinstance(lamp, PointLamp) or lamp.owner in shaded
-        if is_mesh and not may_be_inside and is_buried(lamp.position_m, eye, walls):
+        may_be_buried = is_mesh and lamp.owner not in shaded
+        if may_be_buried and isinstance(lamp, PointLamp) and is_buried(lamp.position_m, eye, walls):
             x, y, z = lamp.position_m
             raise InputError(
                 f"the lamp {lamp.name!r} at ({x:g}, {y:g}, {z:g}) is inside a wall",

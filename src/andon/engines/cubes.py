@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.composite.per_lux import per_lux
+from andon.composite.per_lux import shown_reflectance
+from andon.composite.reference import unlit_linear
 from andon.engines.baked import lamps_in_probes
 from andon.engines.moment import Moment
 from andon.engines.prepared import Prepared
@@ -220,13 +221,7 @@ _NONE = np.zeros((0, 3), np.int32)
 
 def _light(frame: CameraFrame, prepared: Prepared) -> NDArray[np.float32]:
     """(H, W, 6) luminance left of the photograph's own light, and reflectance."""
-    ambient, linear = prepared.ambient, np.asarray(frame.linear, np.float64)
-    dimming = np.asarray(ambient.dimming)
-    if ambient.dimming_mode == "linear":
-        dimmed = dimming * linear
-    else:
-        dimmed = frame.response.decode(dimming * frame.response.encode(linear))
     measured = prepared.measured.get(frame.view.name)
-    reflectance = np.pi * frame.luminance_per_unit * per_lux(frame, ambient, measured)
-    light = np.concatenate([frame.luminance_per_unit * dimmed, reflectance], axis=-1)
-    return np.maximum(light, 0).astype(np.float32)
+    left = frame.luminance_per_unit * unlit_linear(frame, prepared.ambient, measured)
+    reflectance = shown_reflectance(frame, prepared.ambient, measured)
+    return np.maximum(np.concatenate([left, reflectance], axis=-1), 0).astype(np.float32)

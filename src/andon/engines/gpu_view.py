@@ -26,7 +26,7 @@ from andon.gpu.passes import FullscreenPass
 from andon.gpu.textures import make_texture
 from andon.quantities import CameraFrame
 from andon.surface.model import SurfaceModel
-from andon.surface.stage import SurfaceStage
+from andon.surface.stage import GpuSurface, SurfaceStage
 from andon.transport.baked.stage import BakedPicture
 from andon.transport.direct import stage as direct
 from andon.transport.probes.stage import ProbePicture
@@ -50,21 +50,9 @@ class GpuView:
         view = frame.view
         start = engine.start
         shells = None if prepared.shells is None else prepared.shells.views[view.name]
-        self.surface = SurfaceStage(
-            gpu, prepared.surface, view, start.bodies, start.movers, shells
-        )
+        self.surface = SurfaceStage(gpu, prepared.surface, view, start.bodies, start.movers, shells)
         seen = self.surface.surface
-        self.composite = composite.CompositeStage(
-            gpu,
-            view,
-            prepared.ambient,
-            seen.texture.view,
-            seen.view_buffer,
-            seen.emitted_cd_m2,
-            engine.taking,
-            prepared.measured.get(view.name),
-        )
-        self.composite.load(frame)
+        self.composite = _composite_of(engine, frame, seen)
         self.luminance = make_texture(gpu, "rgba16float", view.width, view.height, label="light")
         self.glass: GlassView | None = None
         if engine.glass is not None:
@@ -148,10 +136,30 @@ class GpuView:
         return bool(self._moved.since_last([*moment.movers, *bodies]))
 
     def _entry_point(self, prepared: Prepared) -> str:
+        if self.composite.has_curves:
+            return "relit_with_curves"
         if self.composite.has_maps:
             return "relit_with_maps"
         has_objects = prepared.surface.has_objects or self.surface.has_bodies
         return "relit_with_objects" if has_objects else "relit"
+
+
+def _composite_of(
+    engine: GpuEngine, frame: CameraFrame, seen: GpuSurface
+) -> composite.CompositeStage:
+    """What becomes of the photograph, with the photograph in it."""
+    stage = composite.CompositeStage(
+        engine.gpu,
+        frame.view,
+        engine.prepared.ambient,
+        seen.texture.view,
+        seen.view_buffer,
+        seen.emitted_cd_m2,
+        engine.taking,
+        engine.prepared.measured.get(frame.view.name),
+    )
+    stage.load(frame)
+    return stage
 
 
 def _standing_in_probes(model: SurfaceModel) -> list[NDArray[np.float64]]:

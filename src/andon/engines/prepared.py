@@ -25,7 +25,6 @@ from andon.engines.photographless import (
     white_cd_m2,
 )
 from andon.engines.probes import SceneProbes, changed_since_bake, probes_of
-from andon.engines.real_shells import RealShells, real_shells
 from andon.engines.reading import (
     exposure_of,
     glow_of,
@@ -35,6 +34,7 @@ from andon.engines.reading import (
     source_of,
     view_of,
 )
+from andon.engines.real_shells import RealShells, real_shells
 from andon.errors import InputError
 from andon.glow.model import Glow
 from andon.lamps import Body, Lamp, resolve_bodies, resolve_lamps
@@ -53,7 +53,6 @@ __all__ = ["Prepared", "prepare"]
 LATER_TABLES: tuple[str, ...] = ()
 
 LATER_KEYS = {
-    "surface": ("response",),
     "capture": ("depth", "pose", "noise"),
 }
 
@@ -255,7 +254,7 @@ def _photographed(scene: Scene, probes: SceneProbes | None, drawn: bool) -> _See
         for name, picture in pictures.items()
     }
     frames = {name: with_clipped_light(scene, frame) for name, frame in frames.items()}
-    measured, on_maps = measured_of(scene, views, frames, ambient)
+    measured, on_maps = measured_of(scene, views, frames, ambient, surface)
     surface = replace(surface, notes=(*surface.notes, *notes, *on_maps))
     return frames, ambient, surface, measured
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from andon.lamps import Body, Lamp
-from andon.quantities import CameraFrame, Geometry
+from andon.quantities import CameraFrame, Geometry, Surface
+from andon.spaces import View
 from andon.surface import reference
 from andon.surface.cutting import parted
 from andon.surface.model import SurfaceModel
@@ -60,7 +61,11 @@ class RealShells:
         for names in self.parts:
             if lamp.owner in names or REAL in shadow.through:
                 passed.add(_group(names))
-        return replace(lamp, shadow=replace(shadow, through=shadow.through | passed))
+        lit = replace(lamp, shadow=replace(shadow, through=shadow.through | passed))
+        radius_m = getattr(lamp, "visible_radius_m", getattr(lamp, "radius_m", 0.0))
+        if lamp.owner not in self.names or not hasattr(lamp, "glass_m"):
+            return lit
+        return replace(lit, glass_m=radius_m + self.margins_m[lamp.owner])
 
 
 def _group(names: frozenset[str]) -> str:
@@ -80,8 +85,15 @@ def real_shells(
     rest, parts = parted(surface.occluder.geometry, real, own)
     views = {
         name: find_shells(
-            reference.see_real(surface, frame.view), bodies, [margins[b.name] for b in bodies]
+            _measured(surface, frame.view), bodies, [margins[body.name] for body in bodies]
         )
         for name, frame in frames.items()
     }
     return RealShells(frozenset(body.name for body in real), rest, parts, views, margins)
+
+
+def _measured(surface: SurfaceModel, view: View) -> Surface:
+    """The real surface without what was filled: a hole may be the shell, and not what is behind."""
+    seen = reference.see_real(surface, view)
+    guessed = surface.filled.get(view.name)
+    return seen if guessed is None else replace(seen, valid=seen.valid & ~guessed)

@@ -28,8 +28,8 @@ class Reader:
     Attributes
     ----------
     name : ``kind.format``; the kind is ``picture``, ``depth``, ``mesh``, ``camera``, ``response``,
-        ``photometry``, ``volume``, ``exposures``, ``gaze``, ``gaps``, ``harmonics``, or, of baked
-        light, ``maps``, ``geometry``, ``illuminance`` or ``radiance``.
+        ``surface-response``, ``photometry``, ``volume``, ``exposures``, ``gaze``, ``gaps``,
+        ``harmonics``, or, of baked light, ``maps``, ``geometry``, ``illuminance`` or ``radiance``.
     suffixes : lower case, with the dot.
     read : the function that reads it.
     """

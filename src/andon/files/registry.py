@@ -32,6 +32,7 @@ Kind = Literal[
     "mesh",
     "camera",
     "response",
+    "surface-response",
     "photometry",
     "volume",
     "exposures",

@@ -109,11 +109,13 @@ def pack_surface(surface: Surface, /) -> NDArray[np.uint32]:
     packed[..., 2] = channels @ np.array([1, 1 << 8, 1 << 16], np.uint32)
     material = np.clip(surface.material_id, 0, 0xFFFF).astype(np.uint32)
     flags = surface.valid * VALID + surface.is_object * OBJECT + (material << MATERIAL_SHIFT)
-    # A pixel shows a luminous body, which is an object, or a real shell, which is none.
-    for number in (surface.body_id, surface.shell_id):
-        if number is not None:
-            flags = flags + ((number + 1).astype(np.uint32) << BODY_SHIFT)
-    packed[..., 3] = np.where(surface.valid, flags, 0)
+    # A pixel shows a luminous body, which is an object, or a real shell, which is none and may be
+    # a hole.
+    bodies = [
+        0 if number is None else (number + 1).astype(np.uint32) << BODY_SHIFT
+        for number in (surface.body_id, surface.shell_id)
+    ]
+    packed[..., 3] = np.where(surface.valid, flags + bodies[0], 0) + bodies[1]
     return packed
 
 

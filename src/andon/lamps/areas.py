@@ -49,10 +49,12 @@ class SphereLamp(AreaLamp):
     ----------
     position_m : (3,) metres, its centre.
     radius_m : > 0.
+    glass_m : as of a `PointLamp`.
     """
 
     position_m: Float
     radius_m: float
+    glass_m: float = field(default=0.0, kw_only=True)
 
 
 @dataclass(frozen=True)

@@ -69,6 +69,8 @@ class PointLamp:
     shadow : None for a lamp that casts none.
     visible_radius_m : radius of the ball that is drawn, metres; 0: not drawn.
     owner : name of the scene's lamp that this is a part of; "": none.
+    glass_m : how far from the middle the real bulb's own surface may be, which does not hide the
+        drawn ball; 0: there is no real bulb.
     """
 
     name: str
@@ -77,6 +79,7 @@ class PointLamp:
     shadow: Shadow | None = field(default_factory=Shadow)
     visible_radius_m: float = 0.0
     owner: str = field(default="", kw_only=True)
+    glass_m: float = field(default=0.0, kw_only=True)
 
 
 @dataclass(frozen=True)

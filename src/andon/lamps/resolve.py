@@ -143,6 +143,7 @@ def _tables(
     for index, table in enumerate(tables):
         place = f"{where}[{index}]"
         _refuse_later(scene, place, table)
+        _check_real_shell(scene, place, table)
         has_body = table.kind in AREA_KINDS or getattr(table, "shell", None) is not None
         if has_body and table.name in GROUPS:
             raise InputError(
@@ -189,6 +190,22 @@ def _refuse_later(scene: Scene, place: str, table: AnyLamp) -> None:
                 field=f"{place}.{key}",
                 remedy=remedy,
             )
+
+
+def _check_real_shell(scene: Scene, place: str, table: AnyLamp) -> None:
+    """Raise `InputError` for a real shell where none can be seen, or whose light is not direct."""
+    shell = getattr(table, "shell", None)
+    if shell is None or not shell.real:
+        return
+    if place.startswith("ambient."):
+        fault = "is of a lamp of the photograph's own light", "leave it out"
+    elif not scene.has_photograph:
+        fault = "is part of a photograph, and there is none", "leave it out, or add [capture]"
+    elif table.transport != "direct":
+        fault = f"and transport {table.transport!r} exclude each other", "use transport = 'direct'"
+    else:
+        return
+    raise InputError(fault[0], file=scene.file, field=f"{place}.shell.real", remedy=fault[1])
 
 
 # Keys whose meaning would be lost if they were ignored.

@@ -40,9 +40,10 @@ class Ambient(Table):
     )
     harmonics: Reference | None = Field(
         default=None,
-        description="E0 from an estimate of the light that arrives: JSON of 9 spherical-harmonic "
-        "coefficients of luminance, three channels each, world axes (CONVENTIONS.md); E0 is the "
-        "irradiance at each pixel's normal.",
+        description="E0 from an estimate of the light that arrives: JSON with coefficients_cd_m2, 9 "
+        "spherical-harmonic coefficients of luminance of three channels each, world axes "
+        "(CONVENTIONS.md), or a LightProbe of three.js (andon probes export --format three); E0 is "
+        "the irradiance at each pixel's normal.",
     )
     rest_lux: PositiveTriple | None = Field(
         default=None,

@@ -255,8 +255,9 @@ class Display(Table):
     )
     dither: bool = Field(
         default=False,
-        description="Noise against banding, where light was added to the darks of 8-bit pictures: "
-        "as wide as a step of the photograph has become. What was not changed keeps its bytes.",
+        description="Against banding, where light was added to the darks of 8-bit pictures: each "
+        "captured value lies elsewhere in its step, by its surroundings and by noise. What was not "
+        "changed keeps its bytes.",
     )
 
     @model_validator(mode="after")

@@ -128,9 +128,9 @@ class Shell(Table):
     )
     margin_m: Positive | None = Field(
         default=None,
-        description="Of a real shell: what of the real surface is nearer to it than this, or inside "
-        "it, is the shell. Default: 0.02 m, or what decimation and noise leave uncertain in the "
-        "geometry (twice its 95th percentile), if that is more.",
+        description="Of a real shell: what of the real surface is nearer to it than this, or "
+        "inside it, is the shell. Default: 0.02 m, or the lift of shadows (twice the error of "
+        "decimated and noisy geometry), if that is more.",
     )
     mode: Literal["exact", "paper"] = Field(
         default="exact",
@@ -144,7 +144,9 @@ class Shell(Table):
             raise refusal("exactly one of radius_m, mesh, drum is allowed")
         if self.margin_m is not None and not self.real:
             raise refusal(
-                "belongs to real shells", key="margin_m", remedy="state real = true, or leave it out"
+                "belongs to real shells",
+                key="margin_m",
+                remedy="state real = true, or leave it out",
             )
         if self.absorptance + max(self.transmittance) > 1 + 1e-9:
             raise refusal("absorptance + transmittance must be ≤ 1", key="absorptance")

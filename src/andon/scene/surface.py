@@ -29,7 +29,7 @@ def _drop_nan(values: tuple[float, ...]) -> tuple[float, ...]:
 
 
 class Depth(Table):
-    """A depth image. Holes stay holes: they are counted, never filled."""
+    """A depth image. Holes stay holes, and are counted, unless `fill_px` says otherwise."""
 
     file: Reference = Field(description="The depth image.")
     kind: Literal["z", "distance", "disparity"] = Field(
@@ -72,6 +72,12 @@ class Depth(Table):
         default=None,
         description="Closes objects at their back for shadows, metres; default: open.",
     )
+    fill_px: Annotated[int, Field(ge=0, le=256)] = Field(
+        default=0,
+        description="Gaps of up to so many pixels across are closed: holes get the depth of "
+        "their farther rim, are lit, and are counted; for shadows, a surface goes on behind narrow "
+        "things before it. 0: holes stay holes, and light passes where nothing was measured.",
+    )
 
     @model_validator(mode="after")
     def _check_disparity(self) -> Depth:
@@ -95,17 +101,18 @@ class SurfaceResponse(Table):
 
     material: Name = Field(
         default="*",
-        description="Name of the material in the mesh; * is all others. Where `mask` is stated: "
-        "a name for messages.",
+        description="Name of the material in the mesh; * is all other pixels. Where `mask` is "
+        "stated: a name for messages.",
     )
     mask: Reference | None = Field(
         default=None,
         description="Picture of the view, white where the surface is; for surfaces without "
-        "materials (depth, normals).",
+        "materials (depth, normals). Goes before materials; where masks overlap the later "
+        "counts.",
     )
     file: Reference | None = Field(
         default=None,
-        description="Response file, instead of the two lists.",
+        description="CSV of `andon calibrate surface`, instead of the two lists.",
     )
     illuminance_lux: tuple[NonNegative, ...] = Field(
         default=(),
@@ -113,7 +120,8 @@ class SurfaceResponse(Table):
     )
     rgb: tuple[tuple[NonNegative, NonNegative, NonNegative], ...] = Field(
         default=(),
-        description="Linear camera RGB at each of them, rising in every channel.",
+        description="Linear camera RGB at each of them, 1 is the sensor's white, rising in every "
+        "channel. Straight between them and on beyond both ends.",
     )
 
     @model_validator(mode="after")
@@ -202,10 +210,11 @@ class Surface(Table):
                 "reflectance and reflectance_map exclude each other", key="reflectance_map"
             )
         seen: set[str] = set()
-        for index, material in enumerate(entry.material for entry in self.response):
-            if material in seen:
+        for index, entry in enumerate(self.response):
+            if entry.mask is None and entry.material in seen:
                 raise refusal(
-                    f"{material!r} has a response already", key=f"response[{index}].material"
+                    f"{entry.material!r} has a response already", key=f"response[{index}].material"
                 )
-            seen.add(material)
+            if entry.mask is None:
+                seen.add(entry.material)
         return self

@@ -97,9 +97,7 @@ def _cut(corners: Float, body: Body, margin_m: float) -> Float:
 
 def _loose(corners: Float) -> Geometry:
     count = len(corners)
-    return Geometry(
-        corners.reshape(-1, 3), np.arange(3 * count, dtype=np.int32).reshape(-1, 3)
-    )
+    return Geometry(corners.reshape(-1, 3), np.arange(3 * count, dtype=np.int32).reshape(-1, 3))
 
 
 def _joined(geometry: Geometry, corners: Float) -> Geometry:

@@ -18,6 +18,7 @@ from andon.scene import Scene
 from andon.scene.surface import Depth
 from andon.spaces import View, rotate
 from andon.surface.depth import DepthEncoding, depth_from_raw
+from andon.surface.filling import filled, hidden_behind
 from andon.surface.meshes import check_textures, read_geometry, rest_note
 from andon.surface.model import ShadowBias, SurfaceModel
 from andon.surface.normals import normals_from_depth
@@ -102,9 +103,10 @@ def _from_depth(scene: Scene, views: Mapping[str, View]) -> SurfaceModel:
         max_jump=table.max_jump,
         thickness_m=table.thickness_m,
         occluder_triangles=scene.surface.occluder_triangles,
+        fill_px=table.fill_px,
         file=str(path),
     )
-    return replace(model, notes=_on_size(raw.shape, view, path.name))
+    return replace(model, notes=(*_on_size(raw.shape, view, path.name), *model.notes))
 
 
 def _depth_of(raw: Float, view: View, table: Depth, file: str) -> Float:
@@ -144,6 +146,7 @@ def surface_of_depth(
     max_jump: float = 0.05,
     thickness_m: float | None = None,
     occluder_triangles: int = 30_000,
+    fill_px: int = 0,
     file: str | None = None,
 ) -> SurfaceModel:
     """The model of a depth image (H, W) in metres, NaN in holes, of the undistorted `view`.
@@ -154,7 +157,11 @@ def surface_of_depth(
     max_jump : relative step between neighbours that cuts the surface.
     thickness_m : closes objects at their back for shadows.
     occluder_triangles : budget of the shadow geometry; 0 keeps all.
+    fill_px : how wide gaps are that are closed, see `andon.surface.filling`.
     """
+    measured = np.isfinite(depth)
+    if fill_px:
+        depth = filled(depth, fill_px, max_jump=max_jump)
     is_whole = normals is None
     if normals is None:
         normals = normals_from_depth(depth, view, max_jump=max_jump)
@@ -168,6 +175,8 @@ def surface_of_depth(
             remedy="check kind and scale_to_m",
         )
     sheet = real if is_whole else triangulate_depth(depth, view, max_jump=max_jump)
+    if fill_px:
+        sheet = merged(sheet, hidden_behind(depth, view, fill_px, max_jump=max_jump))
     # The sheet alone is thinned and judged: nobody sees its back. Closing it adds a back and walls,
     # which a third of the budget leaves room for.
     budget = occluder_triangles if thickness_m is None else occluder_triangles // 3
@@ -177,7 +186,15 @@ def surface_of_depth(
         occluder = replace(occluder, geometry=closed)
     bias = max(DEPTH_BIAS_M, DECIMATION_MARGIN * occluder.error_m)
     name = view.name
-    return SurfaceModel(real, {name: depth}, {name: normals}, occluder=occluder, bias=_bias(bias))
+    model = SurfaceModel(real, {name: depth}, {name: normals}, occluder=occluder, bias=_bias(bias))
+    if not fill_px:
+        return model
+    guessed = ~measured & np.isfinite(depth)
+    note = (
+        f"{guessed.sum()} of {(~measured).sum()} hole pixels have the depth of what is beside "
+        f"them: surface.depth.fill_px = {fill_px}"
+    )
+    return replace(model, filled={name: guessed}, notes=(note,))
 
 
 def surface_of_mesh(

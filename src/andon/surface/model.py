@@ -70,6 +70,7 @@ class SurfaceModel:
     normals : view name → (H, W, 3) world normals; with `depth`, those fitted to it; alone, a
         normals-only surface, which has no positions and so takes distant lamps only.
     objects : virtual objects in the world that stand still, each with materials of its own.
+    filled : view name → (H, W) bool, holes that got a depth from beside them.
     occluder : what the real geometry's shadows are cast by (decimated).
     casters : what the virtual objects' shadows are cast by.
     bias : see `ShadowBias`.
@@ -84,6 +85,7 @@ class SurfaceModel:
     normals: Mapping[str, NDArray[np.float64]] = field(
         default_factory=dict[str, NDArray[np.float64]]
     )
+    filled: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict[str, NDArray[np.bool_]])
     objects: Geometry = EMPTY_GEOMETRY
     occluder: Occluder = field(default_factory=lambda: Occluder(EMPTY_GEOMETRY, 0, 0.0))
     casters: Geometry = EMPTY_GEOMETRY

@@ -1,8 +1,8 @@
 """Real shells: which pixels of a photograph show the shade of a lamp, and what else it takes up.
 
-The shade stands in the photograph and in its geometry, unlit. What the user states of it (a drum, a
-mesh) and what was measured agree within a margin only, and measured shades have holes: they are thin,
-often white, and end in the air. So both have a say::
+The shade stands in the photograph and in its geometry, unlit. What the user states of it (a drum,
+a mesh) and what was measured agree within a margin only, and measured shades have holes: they are
+thin, often white, and end in the air. So both have a say::
 
     pixel                                     its own light, w times
     ─────────────────────────────────────────────────────────────────────────────────────────
@@ -14,8 +14,8 @@ often white, and end in the air. So both have a say::
     shell                                     is not the whole pixel
     anything else                             0
 
-A stated outline that is too small thus leaves no dark ring, and one that is too large lights nothing
-that the geometry knows to be something else.
+A stated outline that is too small thus leaves no dark ring, and one that is too large lights
+nothing that the geometry knows to be something else.
 """
 
 from __future__ import annotations
@@ -81,14 +81,14 @@ class ShellsInView:
     hole_depth : (H, W) depth of shells in holes, inf elsewhere: they hide what is behind them.
     samples : number of a body → the places that are seen of it.
     seen_share : number of a body → share of what the view should see of it that has a surface or a
-        hole in its place.
+        hole in its place; None where it should see nothing.
     """
 
     view: View
     shell_id: NDArray[np.int32]
     hole_depth: Float
     samples: dict[int, _Samples]
-    seen_share: dict[int, float]
+    seen_share: dict[int, float | None]
 
     def marked(self, real: Surface, /) -> Surface:
         """The real surface, which knows what of it is a shell."""
@@ -117,12 +117,13 @@ class ShellsInView:
         total = np.zeros((self.shell_id.size, 3))
         for number, seen in self.samples.items():
             body = bodies[number]
-            sides = [
-                np.einsum("ni,nij->nj", seen.shares, side[seen.vertices])
-                for side in (body.outside_cd_m2, body.inside_cd_m2)
-            ]
-            light = np.where(seen.outside[:, None], *sides)
-            np.add.at(total, seen.pixel, seen.weight[:, None] * light)
+            sides = body.outside_cd_m2, body.inside_cd_m2
+            outside, inside = (
+                np.einsum("ni,nij->nj", seen.shares, side[seen.vertices]) for side in sides
+            )
+            own = seen.outside[:, None]
+            light = seen.weight[:, None] * (own * outside + ~own * inside)
+            np.add.at(total, seen.pixel, light)
         return total.reshape(*self.view.shape, 3)
 
 
@@ -136,7 +137,7 @@ def find_shells(
     shell_id = np.full(real.view.shape, -1, np.int32)
     hole_depth = np.full(real.view.shape, np.inf)
     samples: dict[int, _Samples] = {}
-    shares: dict[int, float] = {}
+    shares: dict[int, float | None] = {}
     for number, (body, margin_m) in enumerate(zip(bodies, margins_m, strict=True)):
         if not body.real:
             continue
@@ -146,7 +147,7 @@ def find_shells(
         hole_depth = np.where(look.in_holes & members, look.depth, hole_depth)
         samples[number] = look.samples(members)
         hit = np.isfinite(look.depth)
-        shares[number] = float(members[hit].mean()) if hit.any() else 0.0
+        shares[number] = float(members[hit].mean()) if hit.any() else None
     return ShellsInView(real.view, shell_id, hole_depth, samples, shares)
 
 
@@ -218,7 +219,7 @@ class _Look:
         away = np.linalg.norm(place - self.real.view.position, axis=1)
         gap = np.abs(self.hits.distance[pixels] - away)
         # Of holes there is the hit alone.
-        by_ray = np.isnan(gap) | (gap < ALONG_RAY * self.margin_m)
+        by_ray = ~self.real.valid.ravel()[pixels] | (gap < ALONG_RAY * self.margin_m)
         vertices, shares = np.zeros((len(pixels), 3), np.int64), np.zeros((len(pixels), 3))
         outside = np.zeros(len(pixels), bool)
         triangles = self.body.geometry.triangles
@@ -276,7 +277,7 @@ def _chosen(samples: _Samples, kept: Bool) -> _Samples:
 
 def _beside(mask: Bool) -> Bool:
     """(H, W) pixels that are in `mask`, or one of whose eight neighbours is."""
-    return _neighbours(mask, False).any(axis=0)
+    return np.logical_or.reduce(_neighbours(mask, False), axis=0)
 
 
 def _neighbours(values: NDArray[Any], beyond: Any) -> NDArray[Any]:

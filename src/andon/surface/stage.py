@@ -92,6 +92,9 @@ class GpuSurface:
         own = is_object & (fields["body_id"] < 0)
         emitted[own] = self.emitted_cd_m2[fields["material_id"][own]]
         fields["normal"] = points.normal
+        if self.shell_light is not None:
+            light = self.shell_light.read()[..., :3].astype(np.float64)
+            fields["shell_cd_m2"] = np.where(is_object[..., None], 0.0, light)
         return replace(points, **fields, emitted_cd_m2=emitted)
 
 

@@ -76,8 +76,8 @@ def photometric_stereo(
     """Fits normals and reflectance; then measures how strong each light was.
 
     Strengths are not fitted together with normals: that is exact for a matte thing, and takes for
-    a strength what a rough or glazed one does otherwise (in the rows `relight.photograph` it costs
-    3 dB on the sphere and 1 dB on the cat).
+    a strength what a rough or glazed one does otherwise. On the real photographs that
+    `relight.photograph` relights it cost 1.7 dB on the sphere and 0.8 dB on the cat.
 
     Parameters
     ----------
@@ -113,10 +113,10 @@ def photometric_stereo(
 
 def _solved(grey: Float, lights: Float, weights: Float) -> Float:
     """(n, 3) of ρn by weighted least squares of (k, n) values under (k, 3) lights."""
-    moments = np.einsum("ki,kj,kn->nij", lights, lights, weights)
-    moments += RIDGE * np.eye(3)
-    sums = np.einsum("ki,kn,kn->ni", lights, weights, grey)
-    return np.linalg.solve(moments, sums[..., None])[..., 0]
+    squares = (lights[:, :, None] * lights[:, None, :]).reshape(-1, 9)
+    moments = (weights.T @ squares).reshape(-1, 3, 3) + RIDGE * np.eye(3)
+    sums = (weights * grey).T @ lights
+    return np.asarray(np.linalg.solve(moments, sums[..., None]), np.float64)[..., 0]
 
 
 def _agreement(residuals: Float, candidates: NDArray[np.bool_]) -> Float:
@@ -133,8 +133,8 @@ def _nanmedian(values: Float) -> Float:
     ordered = np.sort(values, axis=0)  # NaN last
     count = np.isfinite(values).sum(axis=0)
     low, high = np.maximum(count - 1, 0) // 2, count // 2
-    columns = np.arange(values.shape[1])
-    middle = (ordered[low, columns] + ordered[np.minimum(high, len(values) - 1), columns]) / 2
+    places = np.stack([low, np.minimum(high, len(values) - 1)])
+    middle = np.take_along_axis(ordered, places, axis=0).mean(axis=0)
     return np.where(count > 0, middle, 0.0)
 
 

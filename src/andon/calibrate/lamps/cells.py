@@ -75,5 +75,7 @@ def cells_of(open_: Mask, white: Mask, /) -> Cells:
 
 def _sums(picture: Float, side: int) -> Float:
     """(h, w, 3) sums over squares; those at the right and lower edge may be smaller."""
-    rows, columns = (np.arange(0, length, side) for length in picture.shape[:2])
-    return np.add.reduceat(np.add.reduceat(picture, rows, axis=0), columns, axis=1)
+    height, width = (-(-length // side) for length in picture.shape[:2])
+    whole = np.zeros((height * side, width * side, 3))
+    whole[: picture.shape[0], : picture.shape[1]] = picture
+    return whole.reshape(height, side, width, side, 3).sum(axis=(1, 3))

@@ -40,7 +40,7 @@ def fit_figure(fit: LampFit, /) -> Rgb:
             ("photograph", photograph),
             ("reference", reference),
             (f"prediction, {_quality(fit)}", predicted),
-            ("prediction − reference, % of the range of codes", error),
+            ("prediction less reference, % of the range of codes", error),
         ],
         columns=2,
         gap_px=GAP_PX,

@@ -9,15 +9,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.calibrate.lamps.asked import (
+    check_photograph,
+    chosen_lamps,
+    free_amounts,
+    ridge_of,
+    terms_of,
+    view_name,
+)
 from andon.calibrate.lamps.cells import Cells, cells_of
-from andon.calibrate.lamps.families import FAMILY, decoded_frame, response_errors
-from andon.calibrate.lamps.measures import Measures, best_gain, best_gains, measured
-from andon.calibrate.lamps.model import FitSettings, FittedFill, FittedLight, LampFit
+from andon.calibrate.lamps.families import best_response, decoded_frame, response_errors
+from andon.calibrate.lamps.model import FitSettings, LampFit
 from andon.calibrate.lamps.notes import notes_of
+from andon.calibrate.lamps.regions import errors_by_region
+from andon.calibrate.lamps.shades import white_of_shades
 from andon.calibrate.lamps.solve import Problem, Solution, solve
 from andon.calibrate.lamps.tables import check_lamps, fitted_scene
-from andon.calibrate.lamps.target import Target, mask_of, target_of
-from andon.calibrate.lamps.terms import Basis, Painter, Term
+from andon.calibrate.lamps.target import mask_of, target_of
+from andon.calibrate.lamps.terms import Basis, Painter
+from andon.calibrate.lamps.values import Values, values_of
 from andon.engines.prepared import Prepared, prepare
 from andon.engines.reading import read_pictures, view_of
 from andon.errors import InputError
@@ -38,7 +48,7 @@ Progress = Callable[[int, int, str], None]
 TILES = 12
 # Where the drawn picture is further from the sum of pictures (root mean square, of its own), light
 # does not simply add, and the fit goes on around what it found; half floats round to 5e-4.
-LINEAR_WITHIN, MOST_STEPS, SETTLED = 3e-3, 6, 2e-3
+LINEAR_WITHIN, MOST_STEPS = 3e-3, 6
 
 
 def fit_lamps(
@@ -47,7 +57,7 @@ def fit_lamps(
     /,
     *,
     mask: Any = None,
-    settings: FitSettings = FitSettings(),
+    settings: FitSettings | None = None,
     progress: Progress | None = None,
 ) -> LampFit:
     """How much light of which colour makes the scene's photograph look like `reference`.
@@ -58,6 +68,7 @@ def fit_lamps(
     reference : path or array (H, W, 3), encoded as the photograph or linear float, of the
         photograph's size and, as the photograph, not yet undistorted.
     mask : path or (H, W) bool; the fit looks at what is white. None: everywhere.
+    settings : what is free; None: flux and colour of all lamps.
     progress : called with pictures drawn, pictures in all, and the name of the last.
 
     Raises
@@ -66,7 +77,7 @@ def fit_lamps(
         for a reference or mask of another size, a mask that selects nothing, a camera that moved
         too far, and lamps that are not there or add no light.
     """
-    fit = _Fit(scene, reference, mask, settings, progress)
+    fit = _Fit(scene, reference, mask, settings or FitSettings(), progress)
     return fit.run()
 
 
@@ -92,21 +103,22 @@ class _Fit:
         progress: Progress | None,
     ) -> None:
         self.settings = settings
-        self.scene = scene if isinstance(scene, Scene) else None
-        if self.scene is not None:
-            self.scene = self.scene.steady()
-            _check_photograph(self.scene)
-            chosen = check_lamps(self.scene, settings.lamps)
-        self.prepared = scene if isinstance(scene, Prepared) else prepare(self.scene or scene)
-        if self.scene is None:
-            chosen = _chosen_of(self.prepared, settings)
-        self.frame = self.prepared.frames[_view_name(self.prepared, settings.view)]
+        if isinstance(scene, Prepared):
+            self.scene, self.prepared = None, scene
+        else:
+            check_photograph(scene)
+            check_lamps(scene, settings.lamps)  # before files are read
+            self.scene = scene.steady()
+            self.prepared = prepare(self.scene)
+        chosen = chosen_lamps(self.scene, self.prepared, settings)
+        self.frame = self.prepared.frames[view_name(self.prepared, settings.view)]
         self.view = self._distorted_view()
-        self.terms = _terms(chosen, settings, self.prepared)
+        self.terms = terms_of(chosen, settings, self.prepared)
         self.target = target_of(reference, self.frame, self.view, settings.align)
         self.mask = None if mask is None else mask_of(mask, self.view)
         self._check_response()
         self._drawn, self._progress = 0, progress
+        self.white_cd_m2: float | None = None
         self._pictures = 3 + len(self.terms) * (2 if settings.response else 1)
 
     def run(self) -> LampFit:
@@ -115,31 +127,50 @@ class _Fit:
         errors: Mapping[str, float] = {}
         chosen: Response | None = None
         if self.settings.response:
-            errors = response_errors(fitted.problem, self.cells, self.frame, self.target)
-            chosen = FAMILY[min(errors, key=lambda name: errors[name])]
+            kept = fitted.solution.kept
+            errors = response_errors(fitted.problem, kept, self.cells, self.frame, self.target)
+            chosen = best_response(errors, self.frame.response)
             if chosen != self.frame.response:
                 self._decode(chosen)
                 fitted = self._fitted()
-        return self._result(fitted, errors, chosen)
+        return self._result(self._with_white(fitted), errors, chosen)
+
+    def _with_white(self, fitted: _Fitted) -> _Fitted:
+        """The same in front of the white that lit shades tell, where the scene states none."""
+        capture = None if self.scene is None else self.scene.capture
+        if capture is None or capture.luminance_per_unit:
+            return fitted
+        self.white_cd_m2 = white_of_shades(fitted.frame, self.target.linear, self.target.seen)
+        if self.white_cd_m2 is None:
+            return fitted
+        self._reframe(replace(self.frame, luminance_per_unit=self.white_cd_m2))
+        painter = self._painter()
+        terms, amounts = fitted.basis.terms, fitted.solution.amounts
+        return replace(fitted, frame=painter.frame(terms, amounts, "with the white of shades"))
 
     def _fitted(self) -> _Fitted:
-        settings = self.settings
-        painter = Painter(
-            self.prepared, settings.engine, settings.time_seconds, settings.view, self._step
-        )
+        painter = self._painter()
         none = np.zeros((len(self.terms), 3))
         dark = painter.frame(self.terms, none, "without lamps")
         self.cells = self._cells(painter.frame(self.terms, none + 1, "with all lamps"))
         basis = painter.basis(self.terms, dark, self.cells)
-        for _ in range(MOST_STEPS):
+        step = 0
+        while True:
+            step += 1
             problem = self._problem(basis)
             solution = solve(problem)
             frame = painter.frame(basis.terms, solution.amounts, "with what was found")
             drawn = self.cells.of(painter.linear(frame))
-            if _relative(drawn - problem.predicted(solution.amounts), drawn) < LINEAR_WITHIN:
-                break
+            off = _relative(drawn - problem.predicted(solution.amounts), drawn)
+            if off < LINEAR_WITHIN or step == MOST_STEPS:
+                return _Fitted(basis, problem, solution, frame)
             basis = painter.around(basis, solution.amounts, drawn, self.cells)
-        return _Fitted(basis, problem, solution, frame)
+
+    def _painter(self) -> Painter:
+        settings = self.settings
+        return Painter(
+            self.prepared, settings.engine, settings.time_seconds, settings.view, self._step
+        )
 
     def _step(self, what: str) -> None:
         self._drawn += 1
@@ -182,12 +213,15 @@ class _Fit:
             cells.counts,
             cells.is_white,
             tiles,
-            _free(basis.terms, self.settings),
+            free_amounts(basis.terms, self.settings),
+            ridge_of(basis.terms),
         )
 
     def _decode(self, response: Response) -> None:
         self.target = self.target.decoded(self.frame.response, response)
-        frame = decoded_frame(self.frame, response)
+        self._reframe(decoded_frame(self.frame, response))
+
+    def _reframe(self, frame: CameraFrame) -> None:
         name = frame.view.name
         self.prepared = replace(self.prepared, frames={**self.prepared.frames, name: frame})
         self.frame = frame
@@ -216,8 +250,6 @@ class _Fit:
     def _result(
         self, fitted: _Fitted, errors: Mapping[str, float], chosen: Response | None
     ) -> LampFit:
-        from andon.calibrate.lamps.values import values_of
-
         predicted = Painter.linear(fitted.frame)
         values = values_of(fitted.basis.terms, fitted.problem, fitted.solution)
         holes = ~fitted.frame.surface.valid
@@ -228,7 +260,14 @@ class _Fit:
             response=self.frame.response,
             responses=errors,
             motion=self.target.motion,
-            measures=self._measures(predicted, holes),
+            measures=errors_by_region(
+                np.asarray(self.frame.linear, np.float64),
+                predicted,
+                self.target,
+                self.mask,
+                holes,
+                self.frame.response,
+            ),
             photograph=np.asarray(self.frame.linear, np.float64),
             reference=self.target.linear,
             predicted=predicted,
@@ -240,33 +279,11 @@ class _Fit:
             scene=self._fitted_scene(values, chosen),
             photometry=self.prepared.photometry,
             notes=(),
+            luminance_per_unit=self.white_cd_m2,
         )
         return replace(fit, notes=notes_of(fit))
 
-    def _measures(self, predicted: Float, holes: Mask) -> dict[str, dict[str, Measures]]:
-        """Errors by region; gains are the best where the fit may look."""
-        photograph = np.asarray(self.frame.linear, np.float64)
-        wanted, response = self.target.linear, self.frame.response
-        looked = self.target.seen if self.mask is None else self.target.seen & self.mask
-        pair = photograph[looked], wanted[looked]
-        gains = {"gain_one": best_gain(*pair, response), "gain_channels": best_gains(*pair, response)}
-        regions = {"whole": self.target.seen}
-        if self.mask is not None:
-            regions = {"inside": looked, "outside": self.target.seen & ~self.mask, **regions}
-        regions |= {f"{name}_without_holes": region & ~holes for name, region in regions.items()}
-        white = 1.0 if self.target.is_encoded else np.inf
-
-        def errors(region: Mask) -> dict[str, Measures]:
-            def off(picture: Float, gain: Float | None = None) -> Measures:
-                return measured(picture, wanted[region], response, gain, white=white)
-
-            own = photograph[region]
-            trivial = {name: off(gain * own, gain) for name, gain in gains.items()}
-            return {"fitted": off(predicted[region]), "unchanged": off(own), **trivial}
-
-        return {name: errors(region) for name, region in regions.items() if region.any()}
-
-    def _fitted_scene(self, values: Any, chosen: Response | None) -> Scene | None:
+    def _fitted_scene(self, values: Values, chosen: Response | None) -> Scene | None:
         if self.scene is None:
             return None
         peaks = {
@@ -282,80 +299,9 @@ class _Fit:
             fill_lux=None if fill is None else (fill.sky_lux, fill.ground_lux),
             dimming=None if values.dimming is None else values.dimming.factor,
             response=chosen,
+            luminance_per_unit=self.white_cd_m2,
         )
 
 
 def _relative(off: Float, values: Float) -> float:
     return float(np.sqrt((off**2).mean() / max((values**2).mean(), 1e-30)))
-
-
-def _free(terms: tuple[Term, ...], settings: FitSettings) -> Float:
-    """(J, 3, P) which parameter is which amount."""
-    columns: list[Float] = []
-    for index, term in enumerate(terms):
-        apart = settings.dimming == "channels" if term.kind == "dimming" else settings.colour
-        for channels in ([[0], [1], [2]] if apart else [[0, 1, 2]]):
-            column = np.zeros((len(terms), 3))
-            column[index, channels] = 1
-            columns.append(column)
-    return np.stack(columns, axis=-1)
-
-
-def _terms(
-    chosen: tuple[str, ...], settings: FitSettings, prepared: Prepared
-) -> tuple[Term, ...]:
-    terms = [Term("lamp", name) for name in chosen]
-    if settings.dimming != "off":
-        if not all(prepared.ambient.dimming) or prepared.ambient.dimming_mode != "linear":
-            raise InputError(
-                "dimming that is fitted starts from light that is left, mode 'linear'",
-                field="ambient.dimming",
-                remedy="leave it out of the scene",
-            )
-        terms.append(Term("dimming", "dimming"))
-    if settings.bounce:
-        lux = float(prepared.ambient.mean_lux.mean())
-        terms += [Term("sky", "light from above", lux), Term("ground", "light from below", lux)]
-    if not terms:
-        raise InputError(
-            "there is nothing to fit: the scene has no lamp",
-            field="fit_lamps",
-            remedy="add a [[lamp]] or --lamp, or ask for dimming or bounce",
-        )
-    return tuple(terms)
-
-
-def _chosen_of(prepared: Prepared, settings: FitSettings) -> tuple[str, ...]:
-    known = dict.fromkeys(
-        lamp.owner or lamp.name
-        for lamp in prepared.lamps(settings.time_seconds)
-        if lamp.owner not in prepared.sources
-    )
-    for name in settings.lamps or ():
-        if name not in known:
-            raise InputError(
-                f"there is no lamp {name!r}, there are {', '.join(map(repr, known)) or 'none'}",
-                field="fit_lamps",
-            )
-    return tuple(name for name in known if settings.lamps is None or name in settings.lamps)
-
-
-def _check_photograph(scene: Scene) -> None:
-    if not scene.has_photograph:
-        raise InputError(
-            "there is no photograph to fit",
-            file=scene.file,
-            field="capture.source",
-            remedy='add [capture] with source = "photo.png"',
-        )
-
-
-def _view_name(prepared: Prepared, view: str | None) -> str:
-    if view is None:
-        return next(iter(prepared.frames))
-    if view not in prepared.frames:
-        raise InputError(
-            f"there is no view {view!r}, this rig has {' and '.join(prepared.frames)}",
-            field="view",
-        )
-    return view

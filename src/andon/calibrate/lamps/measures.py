@@ -83,7 +83,7 @@ def measured(
     predicted = np.minimum(predicted, white)
     codes, wanted = encoded(predicted, response), encoded(reference, response)
     rmse = float(np.sqrt(np.mean((codes - wanted) ** 2)))
-    away = delta_e_2000(lab_of_linear(srgb_decode(codes)), lab_of_linear(srgb_decode(wanted)))
+    away = delta_e_2000(_lab(codes), _lab(wanted))
     return Measures(
         len(predicted),
         float(np.sqrt(np.mean((predicted - reference) ** 2))),
@@ -93,6 +93,10 @@ def measured(
         float(np.percentile(away, 95)),
         None if gain is None else (float(gain[0]), float(gain[1]), float(gain[2])),
     )
+
+
+def _lab(codes: Float) -> Float:
+    return lab_of_linear(np.asarray(srgb_decode(codes), np.float64))
 
 
 def best_gain(photograph: Float, reference: Float, response: Response, /) -> Float:

@@ -125,6 +125,8 @@ class LampFit:
     scene : with the fitted values in its tables; None for arrays.
     photometry : of the numbers.
     notes : what is worth knowing, in words.
+    luminance_per_unit : cd/m² of the linear value 1, as lit real shades tell it where the scene
+        does not state it; else None.
     """
 
     lamps: tuple[FittedLight, ...]
@@ -145,3 +147,4 @@ class LampFit:
     scene: Scene | None
     photometry: Photometry
     notes: tuple[str, ...]
+    luminance_per_unit: float | None = None

@@ -2,7 +2,7 @@
 
 A lamp that is switched on changes ranks and edges of a picture, but not its fine structure. So
 both are compared after their local mean and contrast are taken off; the motion is the one with the
-largest correlation (ECC, Evangelidis & Psarakis 2008), from where the phases of their spectra agree
+largest correlation (Evangelidis & Psarakis 2008), from where the phases of their spectra agree
 or from rest, whichever is better.
 """
 

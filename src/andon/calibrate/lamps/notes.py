@@ -14,7 +14,7 @@ NOTABLE_REJECTED = 0.1
 
 def notes_of(fit: LampFit, /) -> tuple[str, ...]:
     """One line each."""
-    return tuple([*_on_same(fit), *_on_motion(fit), *_on_terms(fit), *_on_error(fit)])
+    return (*_on_same(fit), *_on_motion(fit), *_on_terms(fit), *_on_white(fit), *_on_error(fit))
 
 
 def _on_same(fit: LampFit) -> list[str]:
@@ -48,7 +48,7 @@ def _on_terms(fit: LampFit) -> list[str]:
     if alike:
         notes.append(
             f"no pixel tells {' from '.join(alike)}: only their sum is known, and how it is "
-            "shared out is arbitrary"
+            "shared out is arbitrary (between dimming and bounce: all to dimming)"
         )
     notes += [
         f"the lamp {light.name!r} got no light: the reference is no brighter where it shines"
@@ -56,6 +56,15 @@ def _on_terms(fit: LampFit) -> list[str]:
         if not light.factor.any()
     ]
     return notes
+
+
+def _on_white(fit: LampFit) -> list[str]:
+    if fit.luminance_per_unit is None:
+        return []
+    return [
+        f"lit shades are as bright as the reference shows them if the camera's white is "
+        f"{fit.luminance_per_unit:.4g} cd/m² ({fit.photometry}): capture.luminance_per_unit"
+    ]
 
 
 def _on_error(fit: LampFit) -> list[str]:

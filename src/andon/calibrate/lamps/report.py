@@ -35,6 +35,7 @@ def fit_report(fit: LampFit, /) -> dict[str, Any]:
                 "correlation": fit.motion.correlation,
                 "moved_back": not fit.motion.is_still,
             },
+            "luminance_per_unit_cd_m2": fit.luminance_per_unit,
             "rejected_share": fit.rejected_share,
             "hole_pixels": int(fit.holes.sum()),
             "errors": {
@@ -51,9 +52,17 @@ def stated_light(fit: LampFit, name: str, /) -> dict[str, Any]:
     if fit.scene is None:
         return {}
     table = next(table for table in fit.scene.lamp if table.name == name)
-    keys = (table.light, "rgb", "temperature_k", "chromaticity_xy")
-    keys += ("ground_illuminance_lux", "ground_rgb")
-    return {key: value for key in keys if (value := getattr(table, key, None)) is not None}
+    light = table.light or "intensity_cd"
+    keys = (
+        light,
+        "rgb",
+        "temperature_k",
+        "chromaticity_xy",
+        "ground_illuminance_lux",
+        "ground_rgb",
+    )
+    stated: dict[str, Any] = {key: getattr(table, key, None) for key in keys}
+    return {key: value for key, value in stated.items() if value is not None}
 
 
 def _light(fit: LampFit, light: FittedLight) -> dict[str, Any]:

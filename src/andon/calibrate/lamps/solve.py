@@ -35,17 +35,17 @@ __all__ = ["Problem", "Solution", "noise_variance", "solve"]
 
 Float = NDArray[np.float64]
 
-# Variance of linear values, of white 1: 1.5 codes of 8 bits sRGB, whose slope d(linear)/d(encoded)
-# is 2.2 at white, 0.22 at 0.01 and 0.08 at black, is α + β·L within a factor of 1.3.
-NOISE_AT_BLACK, NOISE_PER_LIGHT = 4e-7, 1.7e-4
+# Variance of linear values, of white 1: within a factor of 1.9 that of 1.5 codes of 8 bits sRGB,
+# what quantisation, compression and a good exposure leave.
+NOISE_AT_BLACK, NOISE_PER_LIGHT = 1.3e-7, 1e-4
 # Tuning constants with 95 % efficiency for normal errors.
 HUBER, TUKEY = 1.345, 4.685
 NORMAL_MEDIAN = 0.6745
 # Rounds with Huber's weights, which have one solution, before Tukey's, which start from it.
 HUBER_ROUNDS, MOST_ROUNDS, END = 12, 60, 1e-6
 GROUPS = 12
-# Of the diagonal of the normal equations: light that cannot be told apart is shared evenly.
-RIDGE = 1e-9
+# Keeps correlations of equal pictures invertible.
+LEAST_RIDGE = 1e-9
 # Least eigenvalue of the correlations of the terms' pictures, and the least part in its vector:
 # two pictures with a correlation of 0.9999 differ by 1.4 %, which no model of a room is good for.
 LEAST_EIGENVALUE, LEAST_PART = 1e-4, 0.25
@@ -65,6 +65,8 @@ class Problem:
     is_white : (n,) bool, the reference is at its white end.
     tiles : (n,) int, the square of the picture in which the cell lies.
     free : (J, 3, P), 1 where parameter p is the amount of term j in channel c.
+    ridge : (J,) of the diagonal of the normal equations; of terms that make the same picture the
+        one with the least gets it.
     """
 
     pictures: Float
@@ -75,6 +77,7 @@ class Problem:
     is_white: NDArray[np.bool_]
     tiles: NDArray[np.intp]
     free: Float
+    ridge: Float
 
     def predicted(self, amounts: Float, /) -> Float:
         """(n, 3) linear values of `amounts` (J, 3)."""
@@ -90,12 +93,14 @@ class Solution:
     amounts : (J, 3) ≥ 0.
     errors : (J, 3) standard errors; NaN where no cell tells anything.
     told_apart : (J,) bool.
-    rejected_share : of the cells with a number, those with a weight of nothing.
+    kept : (n, 3) bool, cells with a number that have any weight.
+    rejected_share : of the cells with a number, the others.
     """
 
     amounts: Float
     errors: Float
     told_apart: NDArray[np.bool_]
+    kept: NDArray[np.bool_]
     rejected_share: float
 
 
@@ -123,8 +128,9 @@ def solve(problem: Problem, /) -> Solution:
     weights = _weights(problem, light) * robust
     errors, told = _told(problem, weights, _residuals(problem, light))
     numbers = (problem.counts > 0) & ~problem.is_white[:, None]
-    rejected = float((robust[numbers] == 0).mean()) if numbers.any() else 0.0
-    return Solution(amounts, errors, told, rejected)
+    kept = numbers & (robust > 0)
+    rejected = 1 - float(kept.sum() / max(numbers.sum(), 1))
+    return Solution(amounts, errors, told, kept, rejected)
 
 
 def _residuals(problem: Problem, light: Float) -> Float:
@@ -145,12 +151,10 @@ def _groups(problem: Problem) -> NDArray[np.intp]:
     """(n, 3) cells in twelve groups of equal size, by how much a unit of all terms changes them."""
     reach = np.abs(problem.pictures).sum(axis=0) / np.sqrt(noise_variance(problem.photograph))
     edges = np.quantile(reach, np.arange(1, GROUPS) / GROUPS)
-    return np.searchsorted(edges, reach)
+    return np.asarray(np.searchsorted(edges, reach), np.intp)
 
 
-def _robust(
-    off: Float, groups: NDArray[np.intp], problem: Problem, /, *, tukey: bool
-) -> Float:
+def _robust(off: Float, groups: NDArray[np.intp], problem: Problem, /, *, tukey: bool) -> Float:
     """(n, 3) factors 0…1 of the weights, by errors `off` in units of the noise."""
     numbers = (problem.counts > 0) & ~problem.is_white[:, None]
     scale = np.ones(GROUPS)
@@ -181,19 +185,18 @@ def _normal(problem: Problem, weights: Float) -> tuple[Float, Float]:
 
 def _least_squares(problem: Problem, weights: Float) -> Float:
     gram, right = _normal(problem, weights)
-    found = nonnegative_least_squares(gram + RIDGE * np.diag(np.diag(gram)), right)
+    ridge = np.einsum("jcp,j->p", problem.free, problem.ridge) / problem.free.sum(axis=(0, 1))
+    found = nonnegative_least_squares(gram + np.diag(ridge * np.diag(gram)), right)
     return problem.free @ found
 
 
-def _told(
-    problem: Problem, weights: Float, off: Float
-) -> tuple[Float, NDArray[np.bool_]]:
+def _told(problem: Problem, weights: Float, off: Float) -> tuple[Float, NDArray[np.bool_]]:
     """Standard errors (J, 3), and which terms are told apart from all others (J,)."""
     gram, _ = _normal(problem, weights)
     own = np.sqrt(np.diag(gram))
     known = own > 0
     size = np.where(known, own, 1.0)
-    correlations = gram / size / size[:, None] + np.diag(np.where(known, RIDGE, 1.0))
+    correlations = gram / size / size[:, None] + np.diag(np.where(known, LEAST_RIDGE, 1.0))
     values, vectors = np.linalg.eigh(correlations)
     mixed = (np.abs(vectors[:, values < LEAST_EIGENVALUE]) > LEAST_PART).any(axis=1)
     inverse = np.linalg.inv(correlations) / size / size[:, None]
@@ -202,7 +205,7 @@ def _told(
     spread = inverse @ (scores.T @ scores) @ inverse * tiles / max(tiles - 1, 1)
     errors = np.where(known, np.sqrt(np.maximum(np.diag(spread), 0)), np.nan)
     is_free = problem.free > 0
-    apart = ~(is_free & mixed).any(axis=(1, 2))
+    apart: NDArray[np.bool_] = ~np.asarray((is_free & mixed).any(axis=(1, 2)), bool)
     return np.where(is_free, errors, 0).sum(axis=2), apart
 
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from andon.calibrate.lamps.terms import FILL_NAME
-from andon.errors import InputError
+from andon.calibrate.lamps.terms import FILL_NAME, free_name
+from andon.errors import InputError, nearest_name
 from andon.lamps.colour import NEUTRAL, factors_from_rgb
 from andon.lamps.tables import colour_of
 from andon.quantities import photometric
@@ -39,8 +39,6 @@ def check_lamps(scene: Scene, names: tuple[str, ...] | None, /) -> tuple[str, ..
 
 
 def _check_known(names: tuple[str, ...], known: list[str], file: str) -> None:
-    from andon.errors import nearest_name
-
     for name in names:
         if name not in known:
             near = nearest_name(name, known)
@@ -86,9 +84,9 @@ def fitted_lamp(table: Any, factor: Float, stated: float | None = None, /) -> An
     `stated` is the peak in cd of a luminaire whose table states none.
     """
     key = table.light or "intensity_cd"
-    value = getattr(table, key) if table.light else stated
+    value = float(getattr(table, key) if table.light else stated or 0.0)
     light = value * colour_of(table) * factor
-    changes = {key: float(photometric(light)), **_coloured(light, table)}
+    changes: dict[str, Any] = {key: float(photometric(light)), **_coloured(light, table)}
     if table.kind == "hemisphere":
         ground = factors_from_rgb(np.array(table.ground_rgb)) if table.ground_rgb else None
         own = colour_of(table) if ground is None else ground
@@ -119,13 +117,10 @@ def _ratio(light: Float) -> tuple[float, float, float] | None:
 
 def fill_table(sky_lux: Float, ground_lux: Float, taken: tuple[str, ...], /) -> Any:
     """The fill as a [[lamp]] of kind ``hemisphere``, with a name that is not taken."""
-    name = FILL_NAME
-    while name in taken:
-        name += "'"
     sky, ground = _ratio(sky_lux), _ratio(ground_lux)
     return HemisphereTable(
         kind="hemisphere",
-        name=name,
+        name=free_name(FILL_NAME, taken),
         illuminance_lux=float(photometric(sky_lux)),
         rgb=sky,
         ground_illuminance_lux=float(photometric(ground_lux)),
@@ -142,10 +137,11 @@ def fitted_scene(
     fill_lux: tuple[Float, Float] | None,
     dimming: Float | None,
     response: Response | None,
+    luminance_per_unit: float | None = None,
 ) -> Scene:
     """`scene` with the fitted values in its tables.
 
-    `stated` are the peaks of luminaires whose tables state none; `response` None leaves it.
+    `stated` are the peaks of luminaires whose tables state none; None leaves what stands there.
     """
     lamps: list[Any] = [
         fitted_lamp(table, factors[table.name], stated.get(table.name))
@@ -160,8 +156,10 @@ def fitted_scene(
         own = np.broadcast_to(np.asarray(scene.ambient.dimming, float), 3) * dimming
         left = tuple(float(share) for share in own)
         changes["ambient"] = scene.ambient.model_copy(update={"dimming": left})
-    if response is not None and scene.capture is not None:
-        changes["capture"] = scene.capture.model_copy(update={"response": _table_of(response)})
+    capture: dict[str, Any] = {} if response is None else {"response": _table_of(response)}
+    capture |= {} if luminance_per_unit is None else {"luminance_per_unit": luminance_per_unit}
+    if capture and scene.capture is not None:
+        changes["capture"] = scene.capture.model_copy(update=capture)
     return scene.model_copy(update=changes)
 
 

@@ -101,7 +101,7 @@ def target_of(source: Any, frame: CameraFrame, view: View, align: Aligning, /) -
     seen = np.ones(view.shape, bool)
     if view.distortion:
         linear = np.asarray(undistort(linear, view), np.float64)
-        seen = np.isfinite(linear).all(axis=-1)
+        seen = np.asarray(np.isfinite(linear).all(axis=-1), bool)
         linear = np.nan_to_num(linear)
         white = undistort(white.astype(np.uint8), view, method="nearest") > 0
     motion = NOT_ASKED
@@ -121,7 +121,9 @@ def _grey(linear: NDArray[Any], frame: CameraFrame) -> Float:
 def _moved(linear: Float, white: Mask, seen: Mask, motion: Motion) -> tuple[Float, Mask, Mask]:
     moved, covered = moved_picture(linear.astype(np.float32), seen, motion.matrix)
     # A pixel that takes any part of its light from a clipped one is clipped.
-    open_ = [moved_picture(seen.astype(np.float32), ~white[..., c], motion.matrix) for c in range(3)]
+    open_ = [
+        moved_picture(seen.astype(np.float32), ~white[..., c], motion.matrix) for c in range(3)
+    ]
     whites = np.stack([~free for _, free in open_], axis=-1)
     return np.asarray(moved, np.float64), whites & covered[..., None], covered
 

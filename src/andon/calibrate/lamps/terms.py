@@ -7,7 +7,7 @@ of surfaces and light that is taken away; there pictures are differences around 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -21,13 +21,16 @@ from andon.lamps import Body, HemisphereLamp, Lamp
 from andon.lamps.kinds import brightened
 from andon.pipeline import EngineName, Frame, Renderer
 
-__all__ = ["Basis", "Painter", "Term", "prepared_with"]
+__all__ = ["FILL_NAME", "Basis", "Painter", "Term", "free_name", "prepared_with"]
 
 Float = NDArray[np.float64]
-UP = np.array([0.0, 1.0, 0.0])
+UP, DARK = np.array([0.0, 1.0, 0.0]), np.zeros(3)
+FILL_NAME = "bounce"
 # Pictures of lamps are drawn with about as much light as E0, which no texture format rounds away;
 # a lamp within this factor of that is drawn as it is.
 NEAR_E0 = 10.0
+# Of differences, in units: wide enough for what half floats round, narrow for curves.
+STEP, LEAST_STEP = 0.1, 0.02
 
 
 @dataclass(frozen=True)
@@ -57,16 +60,10 @@ class Basis:
 
 def prepared_with(prepared: Prepared, terms: Sequence[Term], amounts: Float, /) -> Prepared:
     """The scene with `amounts` (J, 3) of the terms; lamps without light are left out."""
-    factors = {
-        term.name: term.unit * amount
-        for term, amount in zip(terms, amounts, strict=True)
-        if term.kind == "lamp"
-    }
-    lux = {
-        term.kind: term.unit * amount for term, amount in zip(terms, amounts, strict=True)
-    }
+    pairs = [(term, term.unit * amount) for term, amount in zip(terms, amounts, strict=True)]
+    factors = {term.name: value for term, value in pairs if term.kind == "lamp"}
+    lux = {term.kind: value for term, value in pairs if term.kind != "lamp"}
     dimming = lux.get("dimming", np.ones(3))
-    fill = lux.get("sky", np.zeros(3)), lux.get("ground", np.zeros(3))
     own = tuple(float(share) for share in dimming * np.asarray(prepared.ambient.dimming))
 
     def lamps(time_seconds: float) -> tuple[Lamp, ...]:
@@ -74,7 +71,9 @@ def prepared_with(prepared: Prepared, terms: Sequence[Term], amounts: Float, /) 
             _scaled(lamp, factors, dimming, prepared.sources)
             for lamp in prepared.lamps(time_seconds)
         ]
-        return (*(lamp for lamp in lit if lamp is not None), *_filling(*fill))
+        shining = [lamp for lamp in lit if lamp is not None]
+        name = free_name(FILL_NAME, [lamp.name for lamp in shining])
+        return (*shining, *_filling(name, lux.get("sky", DARK), lux.get("ground", DARK)))
 
     def bodies(time_seconds: float) -> tuple[Body, ...]:
         return tuple(
@@ -95,13 +94,18 @@ def _scaled(
     return brightened(lamp, factor) if factor.any() else None
 
 
-def _filling(sky_lux: Float, ground_lux: Float) -> tuple[Lamp, ...]:
+def _filling(name: str, sky_lux: Float, ground_lux: Float) -> tuple[Lamp, ...]:
     if not (sky_lux.any() or ground_lux.any()):
         return ()
-    return (HemisphereLamp(FILL_NAME, UP, sky_lux, ground_lux, owner=FILL_NAME),)
+    return (HemisphereLamp(name, UP, sky_lux, ground_lux, owner=name),)
 
 
-FILL_NAME = "bounce"
+def free_name(name: str, taken: Iterable[str], /) -> str:
+    """`name`, or with as many primes as make it one that is not taken."""
+    others = set(taken)
+    while name in others:
+        name += "'"
+    return name
 
 
 class Painter:
@@ -120,7 +124,8 @@ class Painter:
         view: str | None,
         done: Callable[[str], None],
     ) -> None:
-        self.prepared, self._engine = prepared, engine
+        self.prepared = prepared
+        self._engine: EngineName = engine
         self._time, self._view, self._done = time_seconds, view, done
 
     def frame(self, terms: Sequence[Term], amounts: Float, what: str, /) -> Frame:
@@ -183,7 +188,3 @@ class Painter:
         stacked = np.stack(pictures)
         offset = drawn - np.einsum("jnc,jc->nc", stacked, amounts)
         return Basis(basis.terms, offset, stacked)
-
-
-# Of differences: wide enough for what half floats round, narrow for curves.
-STEP, LEAST_STEP = 0.1, 0.02

@@ -40,7 +40,5 @@ def rim_loop(drum: Drum, around: int, wider: float = 1.0, /, *, above: bool) -> 
     turn = np.linspace(0, 2 * np.pi, around, endpoint=False)
     radius = wider * (drum.top_radius_m if above else drum.radius_m)
     height = drum.height_m - drum.drop_m if above else -drum.drop_m
-    loop = np.stack(
-        [radius * np.sin(turn), np.full(around, height), radius * np.cos(turn)], axis=1
-    )
+    loop = np.stack([radius * np.sin(turn), np.full(around, height), radius * np.cos(turn)], axis=1)
     return loop if above else loop[::-1]

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from andon.display.ciede2000 import delta_e_2000, lab_of_linear
 from andon.display.gaps import marked
 from andon.files.pictures import write_png
 from andon.pipeline import EngineName
@@ -21,7 +22,6 @@ from andon.verify.baked_room import (
     relit_lux,
     white_cd_m2,
 )
-from andon.display.ciede2000 import delta_e_2000, lab_of_linear
 from andon.verify.registry import Row
 
 __all__ = ["ROWS", "added_error", "relit_difference"]

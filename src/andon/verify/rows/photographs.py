@@ -76,7 +76,7 @@ def _rows(name: str) -> tuple[Row, ...]:
     stem = f"relight.photograph.{name}"
     over = f"{PAIRS}, over the best global gain"
     return (
-        Row(stem, "relight", BARS[name], "dB", over, lambda: median_over_gain(name), True),
+        Row(stem, "relight", BARS[name], "dB", over, lambda: median_over_gain(name), at_least=True),
         Row(
             f"{stem}_lit",
             "relight",
@@ -84,7 +84,7 @@ def _rows(name: str) -> tuple[Row, ...]:
             "dB",
             f"{over}; pixels that light i reaches",
             lambda: median_over_gain(name, lit_only=True),
-            True,
+            at_least=True,
         ),
         Row(
             f"{stem}_unlit_share",
@@ -106,7 +106,7 @@ def _psnr_row(name: str, method: str) -> Row:
         "dB PSNR",
         f"{PAIRS}: {MEANING[method]}",
         lambda: median_psnr(name, method),
-        True,
+        at_least=True,
     )
 
 

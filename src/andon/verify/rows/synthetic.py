@@ -21,10 +21,11 @@ from numpy.typing import NDArray
 
 from andon.capture.still import frame_from_picture
 from andon.composite.model import Ambient
+from andon.display.model import Exposure
 from andon.engines.prepared import Prepared
 from andon.files.pictures import Picture
 from andon.lamps import AnyAreaLamp, DiskLamp, PolygonLamp, Shadow, SphereLamp
-from andon.pipeline import EngineName, Renderer
+from andon.pipeline import EngineName, Frame, Renderer
 from andon.quantities import Geometry, Material
 from andon.responses import SRGB
 from andon.spaces import View
@@ -34,7 +35,15 @@ from andon.verify.registry import NotShown, Row
 from andon.verify.rooms import camera_in
 from andon.verify.setting import room
 
-__all__ = ["ROWS", "psnr_db", "relit_psnr", "truth_noise_db", "unlit_share"]
+__all__ = [
+    "ROWS",
+    "psnr_db",
+    "relit_frame",
+    "relit_psnr",
+    "shown_and_truth",
+    "truth_noise_db",
+    "unlit_share",
+]
 
 Float = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
@@ -128,22 +137,26 @@ def _white_cd_m2() -> float:
     return MARGIN * max(float(captured.max()), float(relit.max()))
 
 
-def _encoded(luminance: Float) -> Float:
+def _encoded(luminance: Float, white: float) -> Float:
     """(H, W, 3) sRGB in [0, 1], not rounded."""
-    return np.asarray(SRGB.encode(np.clip(luminance / _white_cd_m2(), 0, 1)), np.float64)
+    return np.asarray(SRGB.encode(np.clip(luminance / white, 0, 1)), np.float64)
 
 
 def _codes(luminance: Float) -> Bytes:
-    return np.asarray(_encoded(luminance) * 255 + 0.5, np.uint8)
+    return np.asarray(_encoded(luminance, _white_cd_m2()) * 255 + 0.5, np.uint8)
 
 
 @cache
-def _relit(engine: EngineName, encoded: bool) -> tuple[Bytes, Float]:
-    """Andon's picture (H, W, 3): 8-bit codes, and sRGB in [0, 1] before it is rounded."""
+def relit_frame(engine: EngineName, encoded: bool, stops_under: float = 0.0) -> Frame:
+    """Andon's frame, from a photograph of 8 bits (`encoded`) or of floats.
+
+    The photograph is exposed `stops_under` less than the picture that is made of it.
+    """
     captured, _, e0 = _truth(CUTS)
-    view, white = _view(), _white_cd_m2()
+    view, shown_white = _view(), _white_cd_m2()
+    white = shown_white * 2**stops_under
     if encoded:
-        picture = Picture(_codes(captured), "srgb")
+        picture = Picture(np.asarray(_encoded(captured, white) * 255 + 0.5, np.uint8), "srgb")
     else:
         picture = Picture((captured / white).astype(np.float32), "linear")
     frame = frame_from_picture(picture, view, SRGB, luminance_per_unit=white)
@@ -154,9 +167,24 @@ def _relit(engine: EngineName, encoded: bool) -> tuple[Bytes, Float]:
         surface=surface_of_mesh(room(), view.position),
         ambient=Ambient(e0, (DIMMING, DIMMING, DIMMING)),
         lamps=lambda _: _virtual_lamps(),
+        exposure=Exposure(1 / shown_white),
     )
-    result = Renderer(prepared, engine).render()
-    return result.image.rgb, _encoded(np.asarray(result.luminance.cd_m2, np.float64))
+    return Renderer(prepared, engine).render()
+
+
+def shown_and_truth(frame: Frame, /) -> tuple[Float, Float, NDArray[np.bool_]]:
+    """A frame and the truth (H, W, 3) in codes that are not rounded; which pixels were lit."""
+    ours = np.asarray(frame.luminance.cd_m2, np.float64)
+    _, relit, e0 = _truth(CUTS)
+    white = _white_cd_m2()
+    return 255 * _encoded(ours, white), 255 * _encoded(relit, white), e0.max(axis=-1) > 0
+
+
+def _relit(engine: EngineName, encoded: bool) -> tuple[Bytes, Float]:
+    """Andon's picture (H, W, 3): 8-bit codes, and sRGB in [0, 1] before it is rounded."""
+    frame = relit_frame(engine, encoded)
+    luminance = np.asarray(frame.luminance.cd_m2, np.float64)
+    return frame.image.rgb, _encoded(luminance, _white_cd_m2())
 
 
 def psnr_db(ours: Float, truth: Float, /) -> float:
@@ -174,7 +202,7 @@ def relit_psnr(engine: EngineName, encoded: bool, *, lit_only: bool) -> float:
     _, relit, e0 = _truth(CUTS)
     kept = e0.max(axis=-1) > 0 if lit_only else np.ones(e0.shape[:2], bool)
     if not encoded:
-        return psnr_db(values[kept], _encoded(relit)[kept])
+        return psnr_db(values[kept], _encoded(relit, _white_cd_m2())[kept])
     _sheet(engine, codes)
     return psnr_db(codes[kept] / 255, _codes(relit)[kept] / 255)
 
@@ -182,7 +210,8 @@ def relit_psnr(engine: EngineName, encoded: bool, *, lit_only: bool) -> float:
 @cache
 def truth_noise_db() -> float:
     """PSNR of the truth whose lamps have a quarter of the triangles."""
-    return psnr_db(_encoded(_truth(CUTS - 1)[1]), _encoded(_truth(CUTS)[1]))
+    coarse, fine = (_encoded(_truth(cuts)[1], _white_cd_m2()) for cuts in (CUTS - 1, CUTS))
+    return psnr_db(coarse, fine)
 
 
 def unlit_share() -> float:

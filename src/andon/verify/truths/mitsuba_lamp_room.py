@@ -2,11 +2,11 @@
 
 ::
 
-      window ▒ │        ┌────┐ picture        The shade is a thin sheet that scatters what it lets
-      (cold)   │        └────┘                through; the bulb is a ball inside it, the stem and the
-               │  ceiling lamp (warm)         foot are under it. All reflections are traced. What is
-         sofa  │    ╱▔╲ lamp                  written here is all that Mitsuba is told: no geometry,
-         ▟█▙   │  ══╤══╤══ table, vase        light or material of Andon's is in it.
+      window ▒ │       ┌────┐ picture     The shade is a thin sheet that scatters what it lets
+      (cold)   │       └────┘             through; the bulb is a ball inside it, stem and foot are
+               │  ceiling lamp (warm)     under it. All reflections are traced. What is written
+         sofa  │    ╱▔╲ lamp              here is all that Mitsuba is told: no geometry, light or
+         ▟█▙   │  ══╤══╤══ table, vase    material of Andon's is in it.
       ─────────┴──────────────── rug
 """
 
@@ -203,8 +203,8 @@ def _furniture() -> dict[str, Any]:
         | {"bsdf": _diffuse((0.66, 0.50, 0.18))},
     }
     for number, (x, z) in enumerate(((-0.75, -1.4), (0.25, -1.4), (-0.75, -0.8), (0.25, -0.8))):
-        made[f"leg{number}"] = _box((x, (TABLE_M - 0.04) / 2, z), (0.025, TABLE_M / 2 - 0.02, 0.025))
-        made[f"leg{number}"] |= {"bsdf": _diffuse((0.30, 0.18, 0.11))}
+        leg = _box((x, TABLE_M / 2 - 0.02, z), (0.025, TABLE_M / 2 - 0.02, 0.025))
+        made[f"leg{number}"] = leg | {"bsdf": _diffuse((0.30, 0.18, 0.11))}
     return made
 
 

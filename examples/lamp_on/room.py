@@ -1,6 +1,6 @@
 """Writes the room of this example: two photographs, the depth, and the scene of them.
 
-    python room.py FOLDER
+python room.py FOLDER
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ def test_a_surface_is_brought_to_what_was_measured_of_it():
 
 def test_the_texture_of_a_pixel_is_a_factor_on_its_light():
     """Half as reflecting as what was measured: half of its lux, before and after."""
-    ambient, added = Ambient(E0, (0.5, 0.75, 1.0)), ZEROS + [30.0, 20, 10]
+    ambient, added = Ambient(E0, (0.5, 0.75, 1.0)), ZEROS + np.array([30.0, 20, 10])
     half = CURVE.linear_of(0.5 * E0)
     relit = relit_linear(frame_of(half), ambient, added, everywhere(CURVE))
     expected = CURVE.linear_of(0.5 * ([0.5, 0.75, 1.0] * E0 + added))

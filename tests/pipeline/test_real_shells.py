@@ -20,7 +20,8 @@ PLACE = [0.05, -0.02, -1.2]
 DRUM = {"radius_m": 0.15, "top_radius_m": 0.12, "height_m": 0.2}
 WALL_M = 1.7
 LAMP = {
-    "kind": "point", "name": "lamp", "position": PLACE, "intensity_cd": 30.0, "shadow_map_size": 256,
+    "kind": "point", "name": "lamp", "position": PLACE, "intensity_cd": 30.0,
+    "shadow_map_size": 256,
     "shell": {"drum": DRUM, "real": True, "transmittance": 0.4, "absorptance": 0.2},
 }  # fmt: skip
 
@@ -74,7 +75,7 @@ def test_both_engines_draw_the_same(gpu, tmp_path):
 
 
 def test_the_wall_gets_the_light_that_a_virtual_shade_sends(engine, tmp_path):
-    """A measured shade hides nothing of its lamp; a virtual one before the bare wall is the same."""
+    """A measured shade hides nothing of its lamp; a virtual one before a bare wall is the same."""
     virtual = LAMP | {"shell": LAMP["shell"] | {"real": False}}
     real = Renderer(room(tmp_path / "real"), engine).render()
     drawn = Renderer(room(tmp_path / "drawn", virtual, values=depth(shade=False)), engine).render()
@@ -186,8 +187,8 @@ def test_what_a_scene_may_not_say(tmp_path, changes, message):
 
 
 def test_real_shells_of_maps_and_of_the_photographs_own_light_are_refused(tmp_path):
+    baked = {"folder": "maps", "lamps": ["lamp"]}
     with pytest.raises(InputError, match=r"lamp\[0\].shell.real"):
-        baked = {"folder": "maps", "lamps": ["lamp"]}
         Renderer(room(tmp_path, LAMP | {"transport": "baked"}, baked=baked), "reference")
     with pytest.raises(InputError, match=r"ambient.source\[0\].shell.real"):
         Renderer(

@@ -35,7 +35,8 @@ CASES = [
     ("[surface]", "surface: exactly one of mesh, depth, normals is allowed, got none"),
     (
         "[ambient]",
-        "ambient: exactly one of illuminance_lux, map, probes, harmonics, rest_lux is allowed, got none",
+        "ambient: exactly one of illuminance_lux, map, probes, harmonics, rest_lux is allowed, "
+        "got none",
     ),
     ('[surface.depth]\nfile = "d"\nkind = "disparity"', "surface.depth.baseline_m: kind 'dispari"),
     ("[[glass]]", "glass[0].radius_m: shape 'sphere' needs radius_m"),

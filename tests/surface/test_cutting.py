@@ -70,9 +70,9 @@ def test_nothing_else_is_cut():
 
 def test_skirts_from_the_rim_to_the_wall_go():
     body = shade()
-    rim = PLACE + (0.15, -0.09, 0)
+    rim = PLACE + np.array([0.15, -0.09, 0])
     skirt = Geometry(
-        np.array([rim, rim - (0, 0, 0.3), rim + (0, 0.15, -0.3)]), np.array([[0, 1, 2]], np.int32)
+        rim + np.array([[0, 0, 0], [0, 0, -0.3], [0, 0.15, -0.3]]), np.array([[0, 1, 2]], np.int32)
     )
     _, parts = parted(merged(WALL, skirt), [body], [MARGIN_M])
     (own,) = parts.values()
@@ -81,7 +81,7 @@ def test_skirts_from_the_rim_to_the_wall_go():
 
 
 def test_two_shades_that_touch_share_what_is_between():
-    other = PLACE + (0.31, 0, 0)
+    other = PLACE + np.array([0.31, 0, 0])
     bodies = [shade(), shade("other", other)]
     between = block((0.03, 0.03, 0.03), (PLACE + other) / 2 - (0, 0.08, 0))
     _, parts = parted(merged(WALL, between), bodies, [MARGIN_M, MARGIN_M])

@@ -75,7 +75,7 @@ def test_a_scene_reads_depth_of_a_quarter_of_its_pixels(tmp_path, kind):
 
 def test_depth_of_another_picture_is_refused(tmp_path):
     np.save(tmp_path / "d.npy", np.ones((90, 160)))
-    with pytest.raises(InputError, match="is 160×90 px but the camera is 120×90.*the same sides"):
+    with pytest.raises(InputError, match=r"is 160×90 px but the camera is 120×90.*the same sides"):
         loaded(tmp_path)
 
 

@@ -60,7 +60,7 @@ def test_a_shade_shines_as_its_body_says():
 
 def test_its_outline_is_smooth_and_its_light_is_kept():
     """As much light as the solid angle that it has, to the pixel's hundredths."""
-    depth, shade = room()
+    depth, _ = room()
     even = replace(body(), outside_cd_m2=np.ones((len(body().outside_cd_m2), 3)))
     even = replace(even, inside_cd_m2=even.outside_cd_m2)
     light = looked(depth, even).light([even])[..., 0]
@@ -108,7 +108,7 @@ def test_all_of_it_may_be_a_hole():
 
 
 def test_what_is_before_the_shade_takes_no_light_of_it():
-    depth, shade = room()
+    depth, _ = room()
     columns = np.broadcast_to(np.arange(VIEW.width) > 47, VIEW.shape)
     seen = looked(np.where(columns, 0.8, depth), body())
     assert not seen.light([body()])[columns].any()
@@ -118,7 +118,7 @@ def test_what_is_before_the_shade_takes_no_light_of_it():
 
 def test_a_shade_somewhere_else_is_not_found():
     depth, _ = room()
-    lamp = PointLamp("lamp", PLACE + (0.0, 0.0, 0.15), np.ones(3))
+    lamp = PointLamp("lamp", PLACE + np.array([0.0, 0.0, 0.15]), np.ones(3))
     elsewhere = expand(lamp, Shell(drum=drum(), real=True))[1]
     seen = looked(depth, elsewhere)
     assert seen.seen_share[0] < 0.3
@@ -130,7 +130,7 @@ def test_from_above_the_inside_is_seen():
     forward = np.array([0, -1.0, -0.9]) / np.hypot(1.0, 0.9)
     right = np.array([1.0, 0, 0])
     pose[:3, :3] = np.stack([right, np.cross(forward, right), forward], axis=1)
-    pose[:3, 3] = PLACE + (0, 1.0, 0.9)
+    pose[:3, 3] = PLACE + np.array([0, 1.0, 0.9])
     view = replace(VIEW, world_from_camera=pose)
     mesh = drum_mesh(drum(), 96, 8)
     seen = trace(Geometry(mesh.positions + PLACE, mesh.triangles), view, is_object=False)

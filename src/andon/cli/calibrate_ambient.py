@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 import typer
 
 from andon.cli.console import check_apart, check_writable, note
@@ -115,7 +115,7 @@ def run(options: AmbientOptions) -> None:
         colour=_colour(options.temperature_k),
     )
     lux = as_captured(found.lux, photograph.captured)
-    write_exr(options.out, lux.astype(np.float32), unit="lx", photometry=found.photometry)
+    write_exr(options.out, lux.astype("float32"), unit="lx", photometry=found.photometry)
     _write_more(options, photograph, estimate, found)
     _print(options, photograph, estimate, found)
 
@@ -133,7 +133,7 @@ def _check(options: AmbientOptions) -> None:
     check_apart(inputs, (options.out, options.figure, options.facts))
     if options.lux is not None and options.reflectance is not None:
         raise InputError("give one of --lux and --reflectance", field="--lux")
-    if options.lux is not None and not 0 < options.lux < np.inf:
+    if options.lux is not None and not 0 < options.lux < math.inf:
         raise InputError(f"must be > 0 lx, got {options.lux:g}", field="--lux")
     if options.reflectance is not None and not 0 < options.reflectance <= 1:
         raise InputError(f"must be > 0 and ≤ 1, got {options.reflectance:g}", field="--reflectance")
@@ -188,6 +188,8 @@ def _write_more(
 
 def facts_of(photograph: Photograph, estimate: AmbientEstimate, found: Placed) -> dict[str, Any]:
     """What was found, as JSON."""
+    import numpy as np
+
     from andon.quantities import photometric
 
     own = found.lux[photograph.seen.valid]

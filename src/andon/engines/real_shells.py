@@ -17,8 +17,11 @@ from andon.transport.direct.casters import REAL
 
 __all__ = ["RealShells", "real_shells"]
 
-# A shell that somebody measured with a ruler is where they say within this, in metres.
-LEAST_MARGIN_M = 0.02
+# A shell that somebody measured with a ruler is where they say within this, in metres. What hides
+# the lamp's light is looked for within more: a piece of its shade that is left is a shadow on the
+# whole room, a piece of something else that goes casts none, for this lamp, so near to its shade.
+LEAST_MARGIN_M = 0.04
+MARGINS_CUT = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +84,7 @@ def real_shells(
         return None
     least = max(LEAST_MARGIN_M, surface.bias.real_m)
     margins = {body.name: body.margin_m or least for body in bodies}
-    own = [margins[body.name] for body in real]
+    own = [MARGINS_CUT * margins[body.name] for body in real]
     rest, parts = parted(surface.occluder.geometry, real, own)
     views = {
         name: find_shells(

@@ -40,8 +40,8 @@ class Ambient(Table):
     )
     harmonics: Reference | None = Field(
         default=None,
-        description="E0 from an estimate of the light that arrives: JSON with coefficients_cd_m2, 9 "
-        "spherical-harmonic coefficients of luminance of three channels each, world axes "
+        description="E0 from an estimate of the light that arrives: JSON with coefficients_cd_m2, "
+        "9 spherical-harmonic coefficients of luminance of three channels each, world axes "
         "(CONVENTIONS.md), or a LightProbe of three.js (andon probes export --format three); E0 is "
         "the irradiance at each pixel's normal.",
     )

@@ -128,9 +128,10 @@ class Shell(Table):
     )
     margin_m: Positive | None = Field(
         default=None,
-        description="Of a real shell: what of the real surface is nearer to it than this, or "
-        "inside it, is the shell. Default: 0.02 m, or the lift of shadows (twice the error of "
-        "decimated and noisy geometry), if that is more.",
+        description="Of a real shell: what of the real surface is nearer to it than this is the "
+        "shell; what is inside it or nearer than twice this hides no light of its lamp. Default: "
+        "0.04 m, or the lift of shadows (twice the error of decimated and noisy geometry), if that "
+        "is more.",
     )
     mode: Literal["exact", "paper"] = Field(
         default="exact",

@@ -1,4 +1,4 @@
-"""Conventions of what is measured: curves, shades, E0; each test fails if its own is turned round."""
+"""Conventions of what is measured: each test fails if its own is turned round."""
 
 import json
 
@@ -9,7 +9,7 @@ from andon.files.responses import read_surface_response
 from andon.harmonics import irradiance
 from andon.lamps.shells.drum import drum_mesh
 from andon.lamps.shells.model import Drum
-from andon.responses import SRGB, SurfaceCurve
+from andon.responses import SRGB
 
 from .settings import X, Y, close, grey, relit
 

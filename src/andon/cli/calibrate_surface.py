@@ -125,7 +125,7 @@ def _check_out(out: Path, inputs: list[Path], surfaces: list[str]) -> None:
 
 def _write(out: Path, fits: list[SurfaceFit], masks: Mapping[str, Path]) -> None:
     from andon.calibrate.surface.figure import surface_figure
-    from andon.files.atomic import write_bytes
+    from andon.files.atomic import write_bytes, write_json
     from andon.files.pictures import write_png
     from andon.files.responses import write_surface_response
 
@@ -139,8 +139,7 @@ def _write(out: Path, fits: list[SurfaceFit], masks: Mapping[str, Path]) -> None
         write_png(out / f"{name}.png", surface_figure(fit))
     tables = [_snippet(fit, out, masks.get(fit.name)) for fit in fits]
     write_bytes(out / SNIPPET, "\n".join([SNIPPET_HEAD, *tables]).encode())
-    facts = {"surfaces": {fit.name: facts_of(fit) for fit in fits}}
-    write_bytes(out / FACTS, (json.dumps(facts, indent=2, allow_nan=False) + "\n").encode())
+    write_json(out / FACTS, {"surfaces": {fit.name: facts_of(fit) for fit in fits}})
 
 
 SNIPPET_HEAD = """\

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -85,9 +84,9 @@ def _settings(options: GazeOptions) -> Any:
 
 
 def _write_report(report: dict[str, Any], path: Path) -> Path:
-    from andon.files.atomic import write_bytes
+    from andon.files.atomic import write_json
 
-    return write_bytes(path, (json.dumps(report, indent=2, allow_nan=False) + "\n").encode())
+    return write_json(path, report)
 
 
 def _print(study: Study) -> None:

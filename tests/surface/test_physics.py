@@ -102,10 +102,10 @@ def test_noise_is_averaged():
 
 
 def kinect_noise(shape, seed):
-    """Relative errors of depth, alike over some 4 px, 0.3 % RMS: as of a depth camera."""
+    """Errors of depth of 0.3 % RMS, alike as a Kinect's over 1, 2, 4 px (0.86, 0.55, 0.09)."""
     import cv2
 
-    noise = cv2.GaussianBlur(np.random.default_rng(seed).standard_normal(shape), (0, 0), 2.0)
+    noise = cv2.GaussianBlur(np.random.default_rng(seed).standard_normal(shape), (0, 0), 1.3)
     return 1 + 0.003 * noise / noise.std()
 
 
@@ -118,8 +118,21 @@ def test_noise_that_is_alike_over_pixels_makes_no_waves():
     world = rotate(view.world_from_camera, normal)
     inside = (slice(8, -8), slice(8, -8))
     error = np.degrees(angles(normals_from_depth(noisy, view), world))[inside]
-    # The narrow window leaves 7.8°; all of the wide one's pixels, evenly, 2.7°.
-    assert np.sqrt((error**2).mean()) < 4
+    assert np.sqrt((error**2).mean()) < 3  # the narrow window alone leaves 9°
+
+
+def test_relief_in_a_calm_picture_is_no_noise():
+    """A ball of 12 px is rough to a 7×7 window; where a fifth of the picture is calm it is kept."""
+    depth, expected = sphere_depth(PINHOLE, (0, 0, 2.0), 0.4)
+    wall = 3.0
+    with_wall = np.where(np.isfinite(depth), depth, wall)
+    alone = normals_from_depth(depth, PINHOLE)
+    before = normals_from_depth(with_wall, PINHOLE)
+    inside = np.isfinite(depth) & (depth < 1.8)
+    assert inside.any()
+    assert np.degrees(angles(alone, before)[inside]).max() < 1e-6
+    world = rotate(PINHOLE.world_from_camera, expected)
+    assert np.degrees(np.median(angles(before, world)[inside])) < 3
 
 
 def test_a_crease_between_noisy_walls_is_found():
@@ -130,9 +143,9 @@ def test_a_crease_between_noisy_walls_is_found():
     expected = np.where((column < view.cx)[..., None], left, right)
     error = np.degrees(angles(normals, rotate(view.world_from_camera, expected)))
     beyond = np.abs(column - view.cx)
-    # 6 to 8° by the narrow window alone, and 16° in the four columns at the crease.
-    assert np.median(error[beyond >= 4]) < 4
-    assert np.median(error[beyond < 4]) < 6
+    # 7 to 9° by the narrow window alone. Beside the crease it stays: 7 to 16°.
+    assert np.median(error[beyond >= 4]) < 2
+    assert np.median(error[beyond < 4]) < 16
 
 
 def crease(view):

@@ -24,18 +24,29 @@ RESIDUAL = 0.003
 # measured is drawn to zero (in 1/depth) with this weight of one pixel.
 PRIOR = 1e-6
 # Depth cameras scatter over several pixels at once: a Kinect by 0.3 % of its depth at 1.4 m, alike
-# over 4 px, of which 7×7 pixels make waves of some 10°. Where depth is rough, a window of the same
-# shape and four times the size is taken: radius 12 px. It takes three passes more; depth that is
-# smooth has none of them. Steps of quantised depth that are as wide as the window stay: a Kinect's
-# beyond some 4 m.
-WIDE = 4
+# over 4 px, and by 0.7 % at 8 m, alike over 8, of which 7×7 pixels make waves of 10° and of 60°.
+# Where depth is rough, windows of the same shape and of two to 16 times the size are taken, one
+# after another, so that beside a crease a pixel's own side grows, and not the mean of both. Each
+# is a pass; depth that is smooth has none of them.
+STRIDES = (2, 4, 4, 8, 16)
 # What is rough, RMS of 1/depth around the first plane, relative: above rounding and stored
-# millimetres, below any camera's scatter. Noise is all over a place, a crease is a line: the least
-# of a window counts.
+# millimetres, below any camera's scatter.
 ROUGH = 2e-4
-# Of noise the wide window sees no more than up to this many times what the narrow one does; of
-# curvature 16 times as much, and of an edge more. Between the two the normals pass over.
-NOISE_RATIO, RELIEF_RATIO = 2.5, 5.0
+# Noise of the whole picture by `_level`: what smooth balls of 7 px radius have, and what structured
+# light at its best. Below the first, what is rough in a picture is relief.
+CLEAN, NOISY = 4e-4, 5.5e-4
+LAG_PX = 2
+# A window of twice the size sees about as much noise, four times the curvature, and more of an
+# edge. Between the two ratios the normals pass over.
+NOISE_RATIO, RELIEF_RATIO = 2.5, 3.5
+# The same of the first two windows before anything is set aside: 1 to 1.6 of cameras' noise, 2.5
+# of a ball of 12 px in noise of 0.3 %, 3 at a crease.
+FLAT_RATIO, CURVED_RATIO = 2.0, 2.4
+# The slope's own error, as that of noise that is alike over 6 px: below the first (radians, of a
+# surface that faces the camera) a window is wide enough, from the second on a wider one is taken.
+ALIKE_PX, ENOUGH, TOO_MUCH = 6.0, 0.04, 0.08
+# Pixels off the last window's plane by so many times its scatter count 0.6 in the next.
+TOLERANCE = 4.0
 
 
 def normals_from_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -> Float:
@@ -45,7 +56,7 @@ def normals_from_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -
     ray meets an image plane. An affine function is fitted to 1/depth in a 7×7 window, weighted by
     distance; pixels across a jump do not count; a second pass takes weight from those off the
     first plane, so that creases stay sharp and noise is averaged. Where depth stays rough, as that
-    of depth cameras is, the window is four times as large.
+    of depth cameras is, windows are wider.
 
     Parameters
     ----------
@@ -55,10 +66,13 @@ def normals_from_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -
     with np.errstate(invalid="ignore", divide="ignore"):
         inverse = np.where(depth > 0, 1 / depth, 0.0)
     image = _Pixels(view) if view.projection == "pinhole" else _TangentPlanes(view)
-    affine, _ = _fit(inverse, max_jump, None, image)
+    affine, bent = _fit(inverse, max_jump, None, image)
     affine, scatter = _fit(inverse, max_jump, affine, image)
-    if (scatter > ROUGH).any():
-        affine = _where_rough(inverse, max_jump, affine, scatter, image)
+    level = _level(inverse)
+    if level > CLEAN:
+        share = _share_of_noise(inverse, max_jump, bent, scatter, image)
+        share *= min((level - CLEAN) / (NOISY - CLEAN), 1.0)
+        affine = _widened(inverse, max_jump, affine, scatter, share, image)
     plane = image.plane(affine)
     plane *= np.sign(np.einsum("...i,...i->...", plane, view.rays_planar()))[..., None]
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -67,30 +81,91 @@ def normals_from_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -
     return rotate(view.world_from_camera, normals)
 
 
-def _where_rough(
-    inverse: Float, max_jump: float, narrow: Float, scatter: Float, image: _Pixels | _TangentPlanes
-) -> Float:
-    """Value and slopes: of the wide window where its scatter is that of noise."""
+def _level(inverse: Float) -> float:
+    """Median of |second difference along both axes|/6 of 1/depth, relative; 0 where none is whole.
+
+    Planes and curved surfaces vanish in it (Immerkær 1996); taken over steps of `LAG_PX`, since
+    neighbours err alike.
+    """
     import cv2
 
-    tolerance = np.maximum(RESIDUAL, 4 * scatter)
-    wide, around = narrow, scatter
-    # In steps, so that beside a crease a pixel's own side grows, and not the mean of both.
-    for stride in (WIDE // 2, WIDE, WIDE):
+    side = 2 * LAG_PX + 1
+    line = np.zeros(side)
+    line[[0, LAG_PX, -1]] = 1.0, -2.0, 1.0
+    found = np.abs(cv2.sepFilter2D(inverse, -1, line, line, borderType=cv2.BORDER_REFLECT))
+    whole = cv2.erode((inverse > 0).astype(np.uint8), np.ones((side, side))) > 0
+    whole[:LAG_PX], whole[-LAG_PX:], whole[:, :LAG_PX], whole[:, -LAG_PX:] = (False,) * 4
+    if not whole.any():
+        return 0.0
+    return float(np.median(np.asarray(found)[whole] / inverse[whole])) / 6
+
+
+def _share_of_noise(
+    inverse: Float, max_jump: float, bent: Float, scatter: Float, image: _Pixels | _TangentPlanes
+) -> Float:
+    """(H, W) 0…1: 1 where depth is rough by noise, 0 where it is smooth or curved.
+
+    `bent` is the scatter around planes from which nothing was set aside, in which curvature shows.
+    """
+    _, wide = _fit(inverse, max_jump, None, image, stride=2)
+    seen = inverse > 0
+    ratio = wide / np.maximum(_noise(bent, seen), ROUGH)
+    share = np.clip((CURVED_RATIO - ratio) / (CURVED_RATIO - FLAT_RATIO), 0, 1)
+    return share * np.clip(_noise(scatter, seen) / ROUGH - 1, 0, 1) * seen
+
+
+def _widened(
+    inverse: Float,
+    max_jump: float,
+    affine: Float,
+    scatter: Float,
+    going_on: Float,
+    image: _Pixels | _TangentPlanes,
+) -> Float:
+    """Value and slopes: of the narrowest window that is wide enough for the noise it sees."""
+    wide, before, last = affine, np.maximum(scatter, _noise(scatter, inverse > 0)), 1
+    for stride in STRIDES:
+        tolerance = np.maximum(RESIDUAL, TOLERANCE * before)
         wide, around = _fit(inverse, max_jump, wide, image, stride=stride, tolerance=tolerance)
-    ratio = around / np.maximum(scatter, ROUGH)
-    share = np.clip((RELIEF_RATIO - ratio) / (RELIEF_RATIO - NOISE_RATIO), 0, 1)
-    side = np.ones((2 * RADIUS_PX + 1, 2 * RADIUS_PX + 1), np.uint8)
-    least = np.asarray(cv2.erode(np.where(inverse > 0, scatter, 1.0), side), np.float64)
-    share *= np.clip(least / ROUGH - 1, 0, 1)
-    return narrow + share[..., None] * (wide - narrow)
+        ratio = around / np.maximum(before, ROUGH)
+        going_on = going_on * np.clip((RELIEF_RATIO - ratio) / (RELIEF_RATIO - NOISE_RATIO), 0, 1)
+        error = before * image.per_radian * ALIKE_PX / (SIGMA_PX * last) ** 2
+        going_on *= np.clip((error - ENOUGH) / (TOO_MUCH - ENOUGH), 0, 1)
+        affine = affine + going_on[..., None] * (wide - affine)
+        before, last = around, stride
+        if not going_on.any():
+            break
+    return affine
+
+
+def _noise(scatter: Float, seen: NDArray[np.bool_]) -> Float:
+    """(H, W) scatter without that of lines, and without gaps in it: what a whole place has.
+
+    An opening of the window's size takes away creases, whose scatter is a line as wide as the
+    window. A closing of three times the size fills the treads of quantised depth, which have none.
+    """
+    side = 2 * RADIUS_PX + 1
+    opened = _most(_least(scatter, seen, side), seen, side)
+    return _least(_most(opened, seen, 3 * side), seen, 3 * side)
+
+
+def _least(values: Float, seen: NDArray[np.bool_], side: int) -> Float:
+    import cv2
+
+    return np.asarray(cv2.erode(np.where(seen, values, 1.0), np.ones((side, side))), np.float64)
+
+
+def _most(values: Float, seen: NDArray[np.bool_], side: int) -> Float:
+    import cv2
+
+    return np.asarray(cv2.dilate(np.where(seen, values, 0.0), np.ones((side, side))), np.float64)
 
 
 class _Pixels:
     """The image plane of a pinhole: places are pixels, the same for all."""
 
     def __init__(self, view: View) -> None:
-        self.view = view
+        self.view, self.per_radian = view, max(view.fx, view.fy)
 
     def place(self, centre: Window, other: Window, dx: int, dy: int) -> tuple[Any, Any, Any]:
         """Offset of `other` from `centre`, and what 1/depth is divided by to be affine in it."""
@@ -118,6 +193,8 @@ class _TangentPlanes:
         right /= np.linalg.norm(right, axis=-1, keepdims=True)
         per_pixel = 1 / np.sqrt(np.maximum(view.solid_angles(), 1e-12))[..., None]
         self.right, self.down = right * per_pixel, np.cross(self.rays, right) * per_pixel
+        # A pixel of the tangent plane is a pixel's angle wide.
+        self.per_radian = 1.0 / np.sqrt(np.maximum(view.solid_angles(), 1e-12))
 
     def place(self, centre: Window, other: Window, dx: int, dy: int) -> tuple[Any, Any, Any]:
         """Offset of `other` from `centre`, and what 1/depth is divided by to be affine in it."""
@@ -159,6 +236,8 @@ def _fit(
 
     for dy in offsets:
         for dx in offsets:
+            if abs(dy) >= height or abs(dx) >= width:
+                continue
             rows, columns = _overlap(height, dy), _overlap(width, dx)
             centre, other = (rows[0], columns[0]), (rows[1], columns[1])
             c, o = inverse[centre], inverse[other]

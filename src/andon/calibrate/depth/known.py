@@ -3,7 +3,7 @@
 x is 1/z (``inverse``) or z (``depth``), α = 1/a, s = b/a. Errors are taken to be those of r, which
 an estimator guessed, against x, which somebody measured: the other regression would be flattened by
 the larger error. The start is the line through two pixels with which most others agree in depth
-(MSAC: Torr & Zisserman 2000). The least median of squares is no start: half of a picture may be one
+(Torr & Zisserman 2000, MSAC). The least median of squares is no start: half of a picture may be one
 wall, and any line through it is as near to that half. Then come Cauchy's weights.
 """
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from andon.cli.console import check_apart, note
+from andon.cli.console import check_apart, check_folder, note
 from andon.errors import InputError
 
 if TYPE_CHECKING:
@@ -110,15 +110,7 @@ def _file_name(surface: str) -> str:
 
 
 def _check_out(out: Path, inputs: list[Path], surfaces: list[str]) -> None:
-    if out.exists() and not out.is_dir():
-        raise InputError("must be a folder", file=out, field="--out")
-    if not out.absolute().parent.is_dir():
-        raise InputError(
-            f"the folder {str(out.parent)!r} does not exist",
-            file=out,
-            field="--out",
-            remedy="make it",
-        )
+    check_folder(out)
     names = [f"{_file_name(name)}{end}" for name in surfaces for end in (".csv", ".png")]
     check_apart(inputs, [out / name for name in (*names, SNIPPET, FACTS)])
 

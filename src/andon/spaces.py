@@ -20,6 +20,7 @@ Stages receive per-pixel directions and solid angles from a `View`, never intrin
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -30,6 +31,7 @@ from andon.errors import InputError
 __all__ = [
     "WORLD_FROM_CAMERA_DEFAULT",
     "View",
+    "another_size",
     "invert_rigid",
     "look_at",
     "perpendicular",
@@ -292,3 +294,21 @@ def pinhole_view(
     """A pinhole `View` of `width` × `height` pixels, its principal point in their middle."""
     middle = ((width - 1) / 2, (height - 1) / 2)
     return View("pinhole", width, height, focal_px, focal_px, *middle, (), world_from_camera, name)
+
+
+def another_size(
+    shape: tuple[int, ...],
+    view: View,
+    /,
+    *,
+    file: str | Path | None,
+    remedy: str,
+    field: str | None = None,
+) -> InputError:
+    """The refusal of a picture (H, W[, C]) that is not of the size of `view`."""
+    return InputError(
+        f"is {shape[1]}×{shape[0]} px but the camera is {view.width}×{view.height}",
+        file=file,
+        field=field,
+        remedy=remedy,
+    )

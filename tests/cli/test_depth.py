@@ -226,7 +226,7 @@ def test_bad_captures_are_refused(capfd, tmp_path):
         (["empty", "-o", "out"], "is no capture of a known format"),
         (["gone", "-o", "out"], "must exist"),
         (["empty", "-o", "file"], "must be a folder"),
-        (["empty", "-o", "a/b"], "its folder does not exist"),
+        (["empty", "-o", "a/b"], "does not exist; make it"),
         (["empty", "-o", "empty"], "is the capture itself"),
     ]:
         paths = [tmp_path / w if not w.startswith("-") else w for w in words]

@@ -10,6 +10,7 @@ import pytest
 from andon.errors import InputError
 from andon.verify import relit_scores
 from andon.verify.photometric_stereo import photometric_stereo
+from andon.verify.psnr import psnr_db
 from andon.verify.registry import NotShown
 from andon.verify.relit_photographs import (
     LIGHT_LUX,
@@ -23,7 +24,6 @@ from andon.verify.relit_scores import (
     Pair,
     best_gain,
     predictions,
-    psnr_db,
     relit,
     score,
     unlit,
@@ -119,9 +119,9 @@ def test_lights_in_a_plane_are_refused(lights):
 
 
 def test_psnr_and_gain_by_hand():
-    assert psnr_db(np.full(4, 100.0), np.full(4, 125.5)) == pytest.approx(20)
+    assert psnr_db(np.full(4, 100.0), np.full(4, 125.5), peak=255) == pytest.approx(20)
     codes = np.array([250, 0], np.uint8)
-    assert psnr_db(codes, codes[::-1]) == pytest.approx(-20 * np.log10(250 / 255))
+    assert psnr_db(codes, codes[::-1], peak=255) == pytest.approx(-20 * np.log10(250 / 255))
     # (1·3 + 2·2)/(1 + 4)
     assert best_gain(np.array([1, 2]), np.array([3, 2])) == pytest.approx(1.4)
 

@@ -12,7 +12,7 @@ from andon.files.pictures import Picture
 from andon.lenses import undistort
 from andon.quantities import CameraFrame
 from andon.responses import Response
-from andon.spaces import View
+from andon.spaces import View, another_size
 
 __all__ = ["frame_from_picture", "linear_from_picture"]
 
@@ -49,13 +49,8 @@ def frame_from_picture(
     pixels that are not finite.
     """
     if picture.shape != view.shape:
-        height, width = picture.shape
-        raise InputError(
-            f"is {width}×{height} px but the camera is {view.width}×{view.height}",
-            file=file,
-            field="capture.source",
-            remedy="give the camera of this picture, or scale one of them",
-        )
+        remedy = "give the camera of this picture, or scale one of them"
+        raise another_size(picture.shape, view, file=file, field="capture.source", remedy=remedy)
     linear = linear_from_picture(picture, response)
     if not np.isfinite(linear).all():
         bad = int(np.count_nonzero(~np.isfinite(linear).all(axis=-1)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -172,7 +171,7 @@ def _as_relit(options: AmbientOptions) -> RelightOptions:
 def _write_more(
     options: AmbientOptions, photograph: Photograph, estimate: AmbientEstimate, found: Placed
 ) -> None:
-    from andon.files.atomic import write_bytes
+    from andon.files.atomic import write_json
     from andon.files.pictures import write_png
 
     if options.figure is not None:
@@ -182,8 +181,7 @@ def _write_more(
             options.figure, ambient_figure(photograph.frame, photograph.seen, estimate, found)
         )
     if options.facts is not None:
-        table = facts_of(photograph, estimate, found)
-        write_bytes(options.facts, (json.dumps(table, indent=2, allow_nan=False) + "\n").encode())
+        write_json(options.facts, facts_of(photograph, estimate, found))
 
 
 def facts_of(photograph: Photograph, estimate: AmbientEstimate, found: Placed) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -100,7 +99,7 @@ def _write_more(
     figure: Path | None,
     facts: Path | None,
 ) -> None:
-    from andon.files.atomic import write_bytes
+    from andon.files.atomic import write_json
     from andon.files.pictures import write_png
 
     if figure is not None:
@@ -108,8 +107,7 @@ def _write_more(
 
         write_png(figure, camera_figure(bracket, calibration))
     if facts is not None:
-        table = facts_of(bracket, calibration, moves)
-        write_bytes(facts, (json.dumps(table, indent=2, allow_nan=False) + "\n").encode())
+        write_json(facts, facts_of(bracket, calibration, moves))
 
 
 def facts_of(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from andon.cli.console import check_apart, note
+from andon.cli.console import check_apart, check_folder, note
 from andon.errors import InputError
 
 if TYPE_CHECKING:
@@ -110,22 +110,14 @@ def _file_name(surface: str) -> str:
 
 
 def _check_out(out: Path, inputs: list[Path], surfaces: list[str]) -> None:
-    if out.exists() and not out.is_dir():
-        raise InputError("must be a folder", file=out, field="--out")
-    if not out.absolute().parent.is_dir():
-        raise InputError(
-            f"the folder {str(out.parent)!r} does not exist",
-            file=out,
-            field="--out",
-            remedy="make it",
-        )
+    check_folder(out)
     names = [f"{_file_name(name)}{end}" for name in surfaces for end in (".csv", ".png")]
     check_apart(inputs, [out / name for name in (*names, SNIPPET, FACTS)])
 
 
 def _write(out: Path, fits: list[SurfaceFit], masks: Mapping[str, Path]) -> None:
     from andon.calibrate.surface.figure import surface_figure
-    from andon.files.atomic import write_bytes
+    from andon.files.atomic import write_bytes, write_json
     from andon.files.pictures import write_png
     from andon.files.responses import write_surface_response
 
@@ -139,8 +131,7 @@ def _write(out: Path, fits: list[SurfaceFit], masks: Mapping[str, Path]) -> None
         write_png(out / f"{name}.png", surface_figure(fit))
     tables = [_snippet(fit, out, masks.get(fit.name)) for fit in fits]
     write_bytes(out / SNIPPET, "\n".join([SNIPPET_HEAD, *tables]).encode())
-    facts = {"surfaces": {fit.name: facts_of(fit) for fit in fits}}
-    write_bytes(out / FACTS, (json.dumps(facts, indent=2, allow_nan=False) + "\n").encode())
+    write_json(out / FACTS, {"surfaces": {fit.name: facts_of(fit) for fit in fits}})
 
 
 SNIPPET_HEAD = """\

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Interrupted",
     "check_apart",
+    "check_folder",
     "check_writable",
     "note",
     "print_report",
@@ -51,6 +52,19 @@ def steps(what: str, total: int, /) -> Generator[Callable[[], None]]:
 def printable(text: str) -> str:
     """A stranger's label as one line without control characters."""
     return "".join(c if c.isprintable() else " " for c in text)[:200].strip()
+
+
+def check_folder(out: Path) -> None:
+    """Refuses a folder for results, which may not exist yet, where it cannot be made."""
+    if out.exists() and not out.is_dir():
+        raise InputError("must be a folder", file=out, field="--out")
+    if not out.absolute().parent.is_dir():
+        raise InputError(
+            f"the folder {str(out.parent)!r} does not exist",
+            file=out,
+            field="--out",
+            remedy="make it",
+        )
 
 
 def check_writable(path: Path, suffixes: tuple[str, ...], field: str) -> None:

@@ -47,7 +47,9 @@ def run(options: FitOptions) -> None:
 
         write_picture(options.figure, fit_picture(relative, known, found))
     if options.json is not None:
-        _write_text(options.json, json.dumps(report(found, options), indent=2, ensure_ascii=False))
+        from andon.files.atomic import write_json
+
+        write_json(options.json, report(found, options))
     print(options.out)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from andon.cli.console import note, printable
+from andon.cli.console import check_folder, note, printable
 from andon.cli.depth_options import ImportOptions
 from andon.cli.typed import ASSUMED_AMBIENT_LUX
 from andon.errors import InputError
@@ -42,10 +42,7 @@ def run(options: ImportOptions) -> None:
     """Reads one frame and writes its files. Raises `InputError` before anything is written."""
     from andon.files.captures import open_capture
 
-    if options.out.exists() and not options.out.is_dir():
-        raise InputError("must be a folder", file=options.out, field="--out")
-    if not options.out.parent.is_dir():
-        raise InputError("its folder does not exist", file=options.out, field="--out")
+    check_folder(options.out)
     if options.out.resolve() == options.capture.resolve():
         raise InputError("is the capture itself", file=options.out, field="--out")
     capture = open_capture(options.capture, scale_to_m=options.scale_to_m)

@@ -110,19 +110,14 @@ def _places(photo: int, depth: int) -> NDArray[np.float64]:
 
 def _painted(path: Path, view: View, shape: tuple[int, int]) -> NDArray[np.bool_]:
     from andon.files.pictures import read_picture
+    from andon.spaces import another_size
 
     picture = read_picture(path)
     if picture.shape not in (view.shape, shape):
-        height, width = picture.shape
-        raise InputError(
-            f"is {width}×{height} px but the camera is {view.width}×{view.height}", file=path
-        )
-    # Half of the codes, not of the light: what an editor shows as middle grey.
-    whole = 1.0 if picture.encoding == "linear" else np.iinfo(picture.values.dtype).max
-    white = np.asarray(picture.values, np.float64).mean(axis=-1) > whole / 2
+        raise another_size(picture.shape, view, file=path, remedy="paint it on the photograph")
     rows = _places(picture.shape[0], shape[0]).astype(np.intp)
     columns = _places(picture.shape[1], shape[1]).astype(np.intp)
-    return white[np.ix_(rows, columns)]
+    return picture.is_painted[np.ix_(rows, columns)]
 
 
 def _pair(text: str, planes: int, *, has_floor: bool) -> tuple[int, int]:

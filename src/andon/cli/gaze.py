@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from andon.cli.console import note
+from andon.cli.console import check_folder, note
 from andon.errors import InputError, nearest_name
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ def run(options: GazeOptions) -> None:
     """Writes pictures, fixations and a report into a folder, and prints a table."""
     from andon.cli.gaze_report import study_of, write_fixations, write_pictures
 
-    _check_out(options.out)
+    check_folder(options.out)
     study = study_of(_settings(options), options.recording, options.rate_hz)
     try:
         options.out.mkdir(exist_ok=True)
@@ -43,18 +42,6 @@ def run(options: GazeOptions) -> None:
     _print(study)
     for path in written:
         print(path)
-
-
-def _check_out(out: Path) -> None:
-    if out.exists() and not out.is_dir():
-        raise InputError("must be a folder", file=out, field="--out")
-    if not out.absolute().parent.is_dir():
-        raise InputError(
-            f"the folder {str(out.parent)!r} does not exist",
-            file=out,
-            field="--out",
-            remedy="make it",
-        )
 
 
 def _settings(options: GazeOptions) -> Any:
@@ -85,9 +72,9 @@ def _settings(options: GazeOptions) -> Any:
 
 
 def _write_report(report: dict[str, Any], path: Path) -> Path:
-    from andon.files.atomic import write_bytes
+    from andon.files.atomic import write_json
 
-    return write_bytes(path, (json.dumps(report, indent=2, allow_nan=False) + "\n").encode())
+    return write_json(path, report)
 
 
 def _print(study: Study) -> None:

@@ -39,8 +39,9 @@ def relit_linear(
 ) -> Float:
     """Linear camera values (H, W, 3) under the new light: captured × (dimming·E0 + ΔE)/E0.
 
-    Where `measured` has a curve f that is f(f⁻¹(captured) × (dimming·E0 + ΔE)/E0). Where light is
-    taken away ΔE is negative; no light at all is the least that is left.
+    Where `measured` has a curve f that is f(f⁻¹(captured) × (dimming·E0 + ΔE)/E0); where it has ρ,
+    what a lux of ΔE adds is `per_lux`. Where light is taken away ΔE is negative; no light at all is
+    the least that is left.
     """
     if measured is None and ambient.dimming_mode == "linear":
         captured, e0 = np.asarray(frame.linear, np.float64), ambient.lux_of(frame.view.name)

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from andon.composite.model import Ambient
 from andon.engines.baked import dimming_of
 from andon.engines.checks import check_lamps
+from andon.engines.measured_curves import one_view
 from andon.engines.probes import SceneProbes
 from andon.errors import InputError
 from andon.files.harmonics import read_harmonics
@@ -159,6 +160,7 @@ def _of_harmonics(scene: Scene, reference: str) -> tuple[Callable[[Surface], Flo
             f"got {given[0].tolist()}",
             file=str(path),
             field="ambient.harmonics",
+            remedy="state illuminance_lux if the light is not known",
         )
     smooth = deringed(given)
     rings = "the light of ambient.harmonics would be negative on some normals: it was smoothed"
@@ -198,10 +200,8 @@ def source_lux(scene: Scene, model: SurfaceModel, seen: Surface, /) -> dict[str,
 
 def _map_lux(scene: Scene, reference: str, views: Mapping[str, View]) -> Float:
     path = scene.path(reference, "ambient.map")
-    if len(views) > 1:
-        raise InputError("one map for two eyes", file=scene.file, field="ambient.map")
+    view = one_view(scene, views, "ambient.map")
     picture = read_picture(path)
-    view = next(iter(views.values()))
     if picture.shape != view.shape or picture.encoding != "linear":
         height, width = picture.shape
         raise InputError(
@@ -209,6 +209,7 @@ def _map_lux(scene: Scene, reference: str, views: Mapping[str, View]) -> Float:
             f"{picture.encoding}",
             file=str(path),
             field="ambient.map",
+            remedy="give EXR or HDR of the photograph's own pixels",
         )
     bad = int(np.count_nonzero(~(picture.values > 0) | ~np.isfinite(picture.values)))
     if bad:
@@ -216,6 +217,7 @@ def _map_lux(scene: Scene, reference: str, views: Mapping[str, View]) -> Float:
             f"E0 must be finite and > 0 everywhere, {bad} values are not",
             file=str(path),
             field="ambient.map",
+            remedy="raise dark pixels to a small share of the mean",
         )
     lux = np.asarray(undistort(np.asarray(picture.values, np.float64), view), np.float64)
     # Where the lens saw nothing the photograph is black: any E0 > 0 keeps it so.

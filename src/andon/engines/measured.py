@@ -20,7 +20,7 @@ from andon.files.pictures import read_picture
 from andon.lenses import undistort
 from andon.quantities import CameraFrame
 from andon.scene import Scene
-from andon.spaces import View
+from andon.spaces import View, another_size
 from andon.surface.model import SurfaceModel
 
 if TYPE_CHECKING:
@@ -70,13 +70,8 @@ def _reflectance(scene: Scene, reference: str, views: Mapping[str, View]) -> Flo
     path = scene.path(reference, "surface.reflectance_map")
     picture = read_picture(path)
     if picture.shape != view.shape:
-        height, width = picture.shape
-        raise InputError(
-            f"is {width}×{height} px but the camera is {view.width}×{view.height}",
-            file=str(path),
-            field="surface.reflectance_map",
-            remedy="give ρ of the photograph's own pixels",
-        )
+        field, remedy = "surface.reflectance_map", "give ρ of the photograph's own pixels"
+        raise another_size(picture.shape, view, file=path, field=field, remedy=remedy)
     rho = checked_reflectance(picture.linear(), "surface.reflectance_map", path)
     # Where the lens saw nothing there is nothing to light.
     return np.nan_to_num(undistort(rho, view))

@@ -17,7 +17,7 @@ from andon.quantities import Geometry
 from andon.responses import SurfaceCurve
 from andon.scene import Scene
 from andon.scene.surface import SurfaceResponse
-from andon.spaces import View
+from andon.spaces import View, another_size
 from andon.surface import reference as surface
 from andon.surface.model import EMPTY_GEOMETRY, SurfaceModel
 
@@ -27,8 +27,6 @@ Mask = NDArray[np.bool_]
 
 # The name for all materials, and pixels, that have no curve of their own.
 OTHERS = "*"
-# A mask is on where it is nearer to white than to black, as encoded: what an editor draws.
-HALF = 0.5
 
 
 def curves_of(
@@ -129,16 +127,9 @@ def _mask(scene: Scene, index: int, table: SurfaceResponse, views: Mapping[str, 
     path = scene.path(table.mask, field)
     picture = read_picture(path)
     if picture.shape != view.shape:
-        height, width = picture.shape
-        raise InputError(
-            f"is {width}×{height} px but the camera is {view.width}×{view.height}",
-            file=str(path),
-            field=field,
-            remedy="draw it on the photograph",
-        )
-    top = 1.0 if picture.encoding == "linear" else float(np.iinfo(picture.values.dtype).max)
-    white = np.asarray((picture.values > HALF * top).all(axis=-1), np.uint8)
-    own = undistort(white, view, method="nearest") > 0
+        remedy = "draw it on the photograph"
+        raise another_size(picture.shape, view, file=path, field=field, remedy=remedy)
+    own = undistort(picture.is_painted.astype(np.uint8), view, method="nearest") > 0
     if not own.any():
         raise InputError(
             f"selects no pixel, so the curve of {table.material!r} has none",

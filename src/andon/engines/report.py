@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from andon.engines.measured import beyond_curves_of, curved_pixels
 from andon.glass.layers import Layered
 from andon.glass.report import GlassReport
 from andon.quantities import CameraFrame, Illuminance, Surface
@@ -105,8 +106,6 @@ def report_of(
 def _beyond_curve_share(
     prepared: Prepared, captured: CameraFrame, surface: Surface, illuminance: Illuminance
 ) -> float | None:
-    from andon.engines.measured import beyond_curves_of, curved_pixels
-
     beyond = beyond_curves_of(prepared, captured, illuminance.lux)
     if beyond is None:
         return None

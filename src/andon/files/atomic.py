@@ -6,14 +6,16 @@ system. Whatever was there before stays untouched until the new contents are com
 
 from __future__ import annotations
 
+import json
 import os
 import secrets
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from andon.errors import InputError, MachineError
 
-__all__ = ["write_atomically", "write_bytes"]
+__all__ = ["write_atomically", "write_bytes", "write_json"]
 
 
 def write_bytes(path: str | Path, data: bytes) -> Path:
@@ -23,6 +25,15 @@ def write_bytes(path: str | Path, data: bytes) -> Path:
         temporary.write_bytes(data)
 
     return write_atomically(path, fill)
+
+
+def write_json(path: str | Path, value: Any) -> Path:
+    """Write `value` as indented JSON with a line's end; returns the path.
+
+    Raises `ValueError` for NaN and infinity, which JSON has not: say None.
+    """
+    text = json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False)
+    return write_bytes(path, (text + "\n").encode())
 
 
 def write_atomically(path: str | Path, fill: Callable[[Path], None]) -> Path:

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.errors import InputError
-from andon.spaces import View
+from andon.spaces import View, another_size
+from andon.surface.resample import SAME_PICTURE
 
 __all__ = ["DepthEncoding", "depth_from_raw"]
 
@@ -46,13 +47,7 @@ def depth_from_raw(raw: Float, view: View, encoding: DepthEncoding, /, *, file: 
     needs, or no pixel has a depth.
     """
     if raw.shape != view.shape:
-        raise InputError(
-            f"is {raw.shape[1]}×{raw.shape[0]} px but the camera is {view.width}×{view.height}",
-            file=file,
-            field="surface.depth",
-            remedy="give depth and camera of one picture; the depth may have fewer pixels, but "
-            "the same sides",
-        )
+        raise another_size(raw.shape, view, file=file, field="surface.depth", remedy=SAME_PICTURE)
     raw = np.where(np.isin(raw, encoding.invalid) | ~np.isfinite(raw), np.nan, raw)
     depth = _metres(raw, view, encoding, file)
     with np.errstate(invalid="ignore"):

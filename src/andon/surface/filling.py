@@ -59,7 +59,8 @@ def _along_rows(inverse: Float, max_jump: float) -> tuple[Float, Int]:
     column = np.indices(inverse.shape)[1]
     known = np.isfinite(inverse)
     left = np.maximum.accumulate(np.where(known, column, -1), axis=1)
-    right = np.minimum.accumulate(np.where(known, column, width)[:, ::-1], axis=1)[:, ::-1]
+    open_right = np.array(np.where(known, column, width), np.intp)
+    right = np.minimum.accumulate(open_right[:, ::-1], axis=1)[:, ::-1]
     closed = (left >= 0) & (right < width)
     start, end = np.clip(left, 0, None), np.clip(right, None, width - 1)
     first, last = (np.take_along_axis(inverse, at, axis=1) for at in (start, end))

@@ -16,7 +16,7 @@ from andon.lenses import undistort
 from andon.quantities import Geometry, Material, merged
 from andon.scene import Scene
 from andon.scene.surface import Depth
-from andon.spaces import View, rotate
+from andon.spaces import View, another_size, rotate
 from andon.surface.depth import DepthEncoding, depth_from_raw
 from andon.surface.filling import filled, hidden_behind
 from andon.surface.meshes import check_textures, read_geometry, rest_note
@@ -245,12 +245,8 @@ def _read_normals(scene: Scene, view: View) -> Float:
     path = scene.path(scene.surface.normals, "surface.normals")
     picture = read_picture(path)
     if picture.shape != view.shape:
-        height, width = picture.shape
-        raise InputError(
-            f"is {width}×{height} px but the camera is {view.width}×{view.height}",
-            file=str(path),
-            field="surface.normals",
-        )
+        field, remedy = "surface.normals", "give normals of the photograph's own pixels"
+        raise another_size(picture.shape, view, file=path, field=field, remedy=remedy)
     values = np.asarray(picture.values, np.float64)
     if picture.encoding == "srgb":  # codes hold −1…1, not light: no transfer function
         values = values / np.iinfo(picture.values.dtype).max * 2 - 1

@@ -15,12 +15,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["ASPECT_TOLERANCE", "resampled", "same_aspect"]
+__all__ = ["ASPECT_TOLERANCE", "SAME_PICTURE", "resampled", "same_aspect"]
 
 Float = NDArray[np.float64]
 
 # Two pictures of one camera: sides of a scaled picture are rounded, to whole pixels or to 8 or 14.
 ASPECT_TOLERANCE = 0.02
+# What to do about a depth of other sides.
+SAME_PICTURE = (
+    "give depth and camera of one picture; the depth may have fewer pixels, but the same sides"
+)
 
 
 def same_aspect(a: tuple[int, int], b: tuple[int, int], /) -> bool:

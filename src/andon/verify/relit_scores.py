@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from andon.pipeline import EngineName, render
 from andon.scene import load_scene
+from andon.verify.psnr import psnr_db
 from andon.verify.relit_photographs import (
     LIGHT_LUX,
     Known,
@@ -41,7 +42,6 @@ __all__ = [
     "best_gain",
     "pairs_of",
     "predictions",
-    "psnr_db",
     "relit",
     "score",
     "unlit",
@@ -76,12 +76,6 @@ class Pair:
         """dB that `method` is better than `baseline`."""
         scores = self.lit_psnr_db if lit_only else self.psnr_db
         return scores[method] - scores[baseline]
-
-
-def psnr_db(ours: NDArray[np.generic], real: NDArray[np.generic], /) -> float:
-    """Peak signal to noise of values of 255 at most, in dB."""
-    away = np.asarray(ours, np.float64) - np.asarray(real, np.float64)
-    return float(-10 * np.log10((away**2).mean() / 255**2))
 
 
 def best_gain(shown: NDArray[np.generic], real: NDArray[np.generic], /) -> float:
@@ -129,8 +123,8 @@ def score(shots: Photographs, known: Known, source: int, predicted: Mapping[str,
     return Pair(
         source,
         known.target,
-        {name: psnr_db(codes, real) for name, codes in shown.items()},
-        {name: psnr_db(codes[lit], real[lit]) for name, codes in shown.items()},
+        {name: psnr_db(codes, real, peak=255) for name, codes in shown.items()},
+        {name: psnr_db(codes[lit], real[lit], peak=255) for name, codes in shown.items()},
         float(1 - lit.mean()),
     )
 

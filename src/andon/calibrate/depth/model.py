@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from andon.errors import InputError
 from andon.lenses import captured_rays
-from andon.spaces import View
-from andon.surface.resample import same_aspect
+from andon.spaces import View, another_size
+from andon.surface.resample import SAME_PICTURE, same_aspect
 
 __all__ = [
     "At",
@@ -171,11 +171,7 @@ def relative_depth(
         raise InputError(f"relative depth needs a pinhole camera, not {view.projection}")
     shape = (values.shape[0], values.shape[1])
     if not same_aspect(shape, view.shape):
-        raise InputError(
-            f"is {shape[1]}×{shape[0]} px but the camera is {view.width}×{view.height}",
-            file=file,
-            remedy="give depth and camera of the same picture; pixels may be fewer, sides not",
-        )
+        raise another_size(shape, view, file=file, remedy=SAME_PICTURE)
     own = view.resized(shape[1], shape[0])
     holes = ~np.isfinite(values) | np.isin(values, invalid)
     kept = np.where(holes, np.nan, values)

@@ -136,8 +136,7 @@ def mask_of(source: Any, view: View, /) -> Mask:
     name = str(source) if isinstance(source, str | Path) else "mask"
     if isinstance(source, str | Path):
         picture = read_picture(source)
-        most = 1.0 if picture.encoding == "linear" else np.iinfo(picture.values.dtype).max
-        inside = photometric(picture.values.astype(np.float64)) > most / 2
+        inside = picture.is_painted
     else:
         inside = np.asarray(source)
         if inside.dtype != bool or inside.ndim != 2:

@@ -52,3 +52,12 @@ class Picture:
             return np.asarray(self.values, np.float64)
         encoded = np.asarray(self.values, np.float64) / np.iinfo(self.values.dtype).max
         return np.asarray(srgb_decode(encoded), np.float64)
+
+    @property
+    def is_painted(self) -> NDArray[np.bool_]:
+        """(H, W) pixels of a mask: lighter, in the mean of their codes, than middle grey.
+
+        Of codes and not of light: the grey that an editor shows in the middle.
+        """
+        white = 1.0 if self.encoding == "linear" else float(np.iinfo(self.values.dtype).max)
+        return np.asarray(np.asarray(self.values, np.float64).mean(axis=-1) > white / 2, bool)

@@ -22,6 +22,7 @@ from andon.verify.baked_room import (
     relit_lux,
     white_cd_m2,
 )
+from andon.verify.psnr import psnr_db
 from andon.verify.registry import Row
 
 __all__ = ["ROWS", "added_error", "relit_difference"]
@@ -64,10 +65,9 @@ def relit_difference(engine: EngineName) -> tuple[float, float, float]:
     truth = np.clip(relit / white_cd_m2(), 0, 1)
     codes = np.asarray(SRGB.encode(truth) * 255 + 0.5, np.uint8) / 255
     ours = frame.image.rgb[which] / 255
-    psnr = -10 * np.log10(((ours - codes) ** 2).mean())
     linear = np.asarray(SRGB.decode(ours), np.float64)
     off = delta_e_2000(lab_of_linear(linear), lab_of_linear(truth))
-    return float(psnr), float(off.mean()), float(np.percentile(off, 95))
+    return psnr_db(ours, codes), float(off.mean()), float(np.percentile(off, 95))
 
 
 def _sheet(engine: EngineName) -> None:

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from andon.calibrate.lamps import FitSettings, LampFit, fit_lamps
 from andon.pipeline import EngineName, Renderer
 from andon.verify.lamp_on_room import photographs, write_lamp_scene
+from andon.verify.psnr import psnr_db
 from andon.verify.registry import Row
-from andon.verify.rows.synthetic import psnr_db
 
 __all__ = ["ROWS", "over_gain_db", "psnr_of"]
 

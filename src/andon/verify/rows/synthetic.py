@@ -31,13 +31,13 @@ from andon.responses import SRGB
 from andon.spaces import View
 from andon.surface.load import surface_of_mesh
 from andon.verify.area_lamps import tiles_at
+from andon.verify.psnr import psnr_db
 from andon.verify.registry import NotShown, Row
 from andon.verify.rooms import camera_in
 from andon.verify.setting import room
 
 __all__ = [
     "ROWS",
-    "psnr_db",
     "relit_frame",
     "relit_psnr",
     "shown_and_truth",
@@ -185,11 +185,6 @@ def _relit(engine: EngineName, encoded: bool) -> tuple[Bytes, Float]:
     frame = relit_frame(engine, encoded)
     luminance = np.asarray(frame.luminance.cd_m2, np.float64)
     return frame.image.rgb, _encoded(luminance, _white_cd_m2())
-
-
-def psnr_db(ours: Float, truth: Float, /) -> float:
-    """Peak signal to noise of two pictures in [0, 1], in dB."""
-    return float(-10 * np.log10(((ours - truth) ** 2).mean()))
 
 
 @cache

@@ -25,11 +25,33 @@ def test_a_hole_in_a_plane_gets_the_plane():
     np.testing.assert_allclose(filled(holed, 6, max_jump=JUMP), depth, rtol=1e-12)
 
 
-def test_wide_holes_and_those_at_the_border_stay():
+def test_a_surface_goes_on_to_the_border():
+    depth = plane()
+    holed = depth.copy()
+    rows, columns = np.indices(holed.shape)
+    holed[rows + columns < 7] = np.nan
+    holed[:, -2:] = np.nan
+    np.testing.assert_allclose(filled(holed, 7, max_jump=JUMP), depth, rtol=1e-9)
+
+
+def test_wide_holes_stay():
     holed = plane()
     holed[10:18, 20:28] = np.nan
-    holed[:, -2:] = np.nan
-    assert np.array_equal(np.isnan(filled(holed, 7, max_jump=JUMP)), np.isnan(holed))
+    holed[:, -8:] = np.nan
+    holed[30] = np.nan
+    whole = filled(holed, 7, max_jump=JUMP)
+    expected = np.isnan(holed)
+    expected[30, :-8] = False
+    np.testing.assert_array_equal(np.isnan(whole), expected)
+
+
+def test_a_hole_in_a_floor_that_is_seen_at_a_slant_gets_the_floor():
+    """Over the hole it gets farther by a sixth, and over the pixels that tell its slope by more."""
+    depth = plane((0, -1.0, -0.6))
+    holed = depth.copy()
+    holed[26:31, 10:34] = np.nan
+    assert depth[25, 20] > 1.15 * depth[31, 20]
+    np.testing.assert_allclose(filled(holed, 6, max_jump=JUMP), depth, rtol=1e-9)
 
 
 def test_between_two_surfaces_the_farther_goes_on():

@@ -10,6 +10,7 @@ Two sorts of gaps let light through that nothing let through in the room::
                         table goes on there.
 
 Both are guesses, along rows or columns, whichever gap is narrower, and only as wide as is stated.
+A hole at the picture's border has one rim, and that one goes on.
 """
 
 from __future__ import annotations
@@ -35,10 +36,7 @@ DEEPER = 0.015
 
 
 def filled(depth: Float, widest_px: int, /, *, max_jump: float) -> Float:
-    """Depth (H, W) in metres whose holes of up to `widest_px` across have a depth, too.
-
-    Holes at the picture's border have one rim only, and stay.
-    """
+    """Depth (H, W) in metres whose holes of up to `widest_px` across have a depth, too."""
     inverse = 1 / depth
     rows, row_gap = _along_rows(inverse, max_jump)
     columns, column_gap = (x.T for x in _along_rows(inverse.T, max_jump))
@@ -61,21 +59,29 @@ def _along_rows(inverse: Float, max_jump: float) -> tuple[Float, Int]:
     left = np.maximum.accumulate(np.where(known, column, -1), axis=1)
     open_right = np.array(np.where(known, column, width), np.intp)
     right = np.minimum.accumulate(open_right[:, ::-1], axis=1)[:, ::-1]
-    closed = (left >= 0) & (right < width)
     start, end = np.clip(left, 0, None), np.clip(right, None, width - 1)
     first, last = (np.take_along_axis(inverse, at, axis=1) for at in (start, end))
     ahead = np.take_along_axis(_slopes(inverse, max_jump), start, axis=1)
     back = np.take_along_axis(_slopes(inverse[:, ::-1], max_jump)[:, ::-1], end, axis=1)
+    across = end - start
     with np.errstate(invalid="ignore"):
-        joined = np.maximum(first, last) <= (1 + max_jump) * np.minimum(first, last)
-        share = (column - start) / np.maximum(end - start, 1)
-        line = first + share * (last - first)
+        # A surface that is seen at a slant gets farther by more than a jump within a hole.
+        joined = _alike(first, last, max_jump)
+        joined |= _alike(first + across * ahead, last, max_jump)
+        joined |= _alike(last + across * back, first, max_jump)
+        line = first + (column - start) / np.maximum(across, 1) * (last - first)
         on_left = first + (column - start) * ahead
         on_right = last + (end - column) * back
-        farther: Float = np.asarray(np.where(first < last, on_left, on_right), np.float64)
-        value: Float = np.asarray(np.where(joined, line, farther), np.float64)
-    gap = np.where(closed, right - left - 1, width + height)
-    return np.where(closed, value, np.nan), gap
+        from_left = (left >= 0) & ((right == width) | (first < last))
+        value: Float = np.asarray(
+            np.where(joined, line, np.where(from_left, on_left, on_right)), np.float64
+        )
+    gap = np.where((left >= 0) | (right < width), right - left - 1, width + height)
+    return value, gap
+
+
+def _alike(a: Float, b: Float, max_jump: float) -> NDArray[np.bool_]:
+    return np.asarray(np.maximum(a, b) <= (1 + max_jump) * np.minimum(a, b), bool)
 
 
 def _slopes(inverse: Float, max_jump: float) -> Float:
@@ -83,7 +89,10 @@ def _slopes(inverse: Float, max_jump: float) -> Float:
     back = np.full_like(inverse, np.nan)
     back[:, SLOPE_PX:] = inverse[:, :-SLOPE_PX]
     with np.errstate(invalid="ignore"):
-        same = np.maximum(inverse, back) <= (1 + max_jump) * np.minimum(inverse, back)
+        whole = np.pad(_alike(inverse[:, 1:], inverse[:, :-1], max_jump), ((0, 0), (1, 0)))
+        steps = np.cumsum(whole, axis=1)
+        same = np.zeros(inverse.shape, bool)
+        same[:, SLOPE_PX:] = steps[:, SLOPE_PX:] - steps[:, :-SLOPE_PX] == SLOPE_PX
     return np.where(same, (inverse - back) / SLOPE_PX, 0.0)
 
 

@@ -21,7 +21,7 @@ from andon.surface.depth import DepthEncoding, depth_from_raw
 from andon.surface.filling import filled, hidden_behind
 from andon.surface.meshes import check_textures, read_geometry, rest_note
 from andon.surface.model import ShadowBias, SurfaceModel
-from andon.surface.normals import normals_from_depth
+from andon.surface.normals import planes_of_depth
 from andon.surface.objects import load_objects
 from andon.surface.occluder import decimated
 from andon.surface.resample import resampled, same_aspect
@@ -164,7 +164,7 @@ def surface_of_depth(
         depth = filled(depth, fill_px, max_jump=max_jump)
     is_whole = normals is None
     if normals is None:
-        normals = normals_from_depth(depth, view, max_jump=max_jump)
+        normals, depth = planes_of_depth(depth, view, max_jump=max_jump)
     lit = np.where(np.isfinite(normals).all(axis=-1), depth, np.nan)
     real = triangulate_depth(lit, view, max_jump=max_jump, normals=normals)
     if len(real.triangles) == 0:

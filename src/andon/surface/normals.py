@@ -1,4 +1,7 @@
-"""Normals from a depth image, by a plane fitted to each pixel's own side of every edge."""
+"""Normals from a depth image, by a plane fitted to each pixel's own side of every edge.
+
+The same plane says where the surface is, where a depth camera scatters: see `planes_of_depth`.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from numpy.typing import NDArray
 
 from andon.spaces import View, rotate
 
-__all__ = ["normals_from_depth"]
+__all__ = ["normals_from_depth", "planes_of_depth"]
 
 Float = NDArray[np.float64]
 Window = tuple[slice, slice]
@@ -52,11 +55,22 @@ TOLERANCE = 4.0
 def normals_from_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -> Float:
     """Unit normals (H, W, 3) in the world, turned to the camera; NaN in holes.
 
+    Parameters as of `planes_of_depth`.
+    """
+    return planes_of_depth(depth, view, max_jump=max_jump)[0]
+
+
+def planes_of_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -> tuple[Float, Float]:
+    """Unit normals (H, W, 3) in the world, turned to the camera, and depth (H, W) without noise.
+
     Over a plane with normal n, 1/depth = q·ray with q ∝ n, which is affine in the place where the
     ray meets an image plane. An affine function is fitted to 1/depth in a 7×7 window, weighted by
     distance; pixels across a jump do not count; a second pass takes weight from those off the
     first plane, so that creases stay sharp and noise is averaged. Where depth stays rough, as that
     of depth cameras is, windows are wider.
+
+    The depth of a picture with noise is that of the 7×7 pixels' planes: one that scatters behind
+    its neighbours would lie in their shadow. Without noise it stays as it is. Holes are NaN in both.
 
     Parameters
     ----------
@@ -68,17 +82,19 @@ def normals_from_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -
     image = _Pixels(view) if view.projection == "pinhole" else _TangentPlanes(view)
     affine, bent = _fit(inverse, max_jump, None, image)
     affine, scatter = _fit(inverse, max_jump, affine, image)
-    level = _level(inverse)
-    if level > CLEAN:
-        share = _share_of_noise(inverse, max_jump, bent, scatter, image)
-        share *= min((level - CLEAN) / (NOISY - CLEAN), 1.0)
+    noisy = min(max((_level(inverse) - CLEAN) / (NOISY - CLEAN), 0.0), 1.0)
+    near = affine[..., 0]
+    if noisy:
+        share = noisy * _share_of_noise(inverse, max_jump, bent, scatter, image)
         affine = _widened(inverse, max_jump, affine, scatter, share, image)
     plane = image.plane(affine)
     plane *= np.sign(np.einsum("...i,...i->...", plane, view.rays_planar()))[..., None]
     with np.errstate(invalid="ignore", divide="ignore"):
         normals = -plane / np.linalg.norm(plane, axis=-1, keepdims=True)
+        smooth = depth + noisy * (1 / near - depth)
     normals[~np.isfinite(depth)] = np.nan
-    return rotate(view.world_from_camera, normals)
+    on_it = np.abs(smooth - depth) <= max_jump * depth
+    return rotate(view.world_from_camera, normals), np.where(on_it, smooth, depth)
 
 
 def _level(inverse: Float) -> float:

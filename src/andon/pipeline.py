@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from andon.display.model import Seen
+from andon.engines.prepared import Prepared, prepare
 from andon.engines.report import Report, report_of
 from andon.errors import InputError, MachineError, nearest_name
 from andon.glass.layers import Layered
@@ -39,7 +40,6 @@ from andon.transport.baked.model import BakedSeen
 
 if TYPE_CHECKING:
     from andon.composite.confidence import Confidence
-    from andon.engines.prepared import Prepared
     from andon.lamps import Lamp
 
 __all__ = ["ENGINES", "Frame", "Renderer", "Report", "relight", "render"]
@@ -110,8 +110,6 @@ class Renderer:
     """
 
     def __init__(self, scene: Scene | Prepared, engine: EngineName = "auto") -> None:
-        from andon.engines.prepared import Prepared, prepare
-
         start = perf_counter()
         self.prepared = scene if isinstance(scene, Prepared) else prepare(scene)
         prepared = perf_counter()

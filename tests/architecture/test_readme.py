@@ -6,9 +6,11 @@ import shutil
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from andon.cli import _run
 from andon.files.pictures import read_picture, write_exr, write_picture
+from andon.responses import SRGB
 
 from .tree import ROOT
 
@@ -16,6 +18,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = re.findall(r"`andon (relight [^`]*)`", README)
 PROBE_COMMANDS = re.findall(r"`andon (probes [^`]*)`", README)
 BAKE_COMMANDS = re.findall(r"`andon (bake [^`]*)`", README)
+FOUND_COMMANDS = re.findall(r"`andon ((?:calibrate|depth fit) [^`]*)`", README)
 GLARE_COMMANDS = re.findall(r"`andon (glare [^`]*)`", README)
 PYTHON = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
 FILES = dict(re.findall(r"```toml\n# ([\w.]+)[^\n]*\n(.*?)```", README, re.DOTALL))
@@ -26,6 +29,8 @@ def folder(tmp_path, monkeypatch):
     """A folder with the files that the README takes for granted, and those that it shows."""
     write_picture(tmp_path / "photo.png", np.full((90, 160, 3), 128, np.uint8))
     np.save(tmp_path / "depth.npy", np.full((90, 160), 2.0))
+    brighter = np.broadcast_to(np.linspace(150, 190, 160)[None, :, None], (90, 160, 3))
+    write_picture(tmp_path / "lamp-on.png", brighter.astype(np.uint8))
     for name, text in FILES.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
@@ -44,6 +49,7 @@ def test_it_shows_something():
         "status",
     ]
     assert len(GLARE_COMMANDS) == 5
+    assert len(FOUND_COMMANDS) == 4
     assert len(PYTHON) == 4
 
 
@@ -61,6 +67,34 @@ def test_python(folder, capsys):
     names = {}
     exec(compile(PYTHON[0], "README.md", "exec"), names)
     assert names["frame"].illuminance.lux.max() > 10
+
+
+@pytest.fixture
+def series(folder):
+    """What responses, curves and depth are found from: exposures, known light, relative depth."""
+    random = np.random.default_rng(1)
+    light = np.geomspace(0.01, 3.0, 160 * 90).reshape(90, 160, 1) * np.array([1.0, 0.8, 0.6])
+    for name, stops in zip("abcde", range(-2, 3), strict=True):
+        codes = 255 * np.clip(light * 2.0**stops / 4, 0, 1) ** (1 / 2.2)
+        noisy = np.clip(np.rint(codes + random.normal(0, 0.5, codes.shape)), 0, 255)
+        exif = Image.Exif()
+        exif.get_ifd(0x8769).update({0x829A: 2.0**stops / 60, 0x829D: 4.0, 0x8827: 100})
+        image = Image.fromarray(noisy.astype(np.uint8))
+        image.save(folder / f"{name}.jpg", quality=98, exif=exif)
+    texture = random.uniform(0.4, 0.6, (90, 160, 3))
+    for name, lux in (("dim", 55), ("half", 210), ("full", 640)):
+        codes = 255 * SRGB.encode(texture * lux / 700)
+        write_picture(folder / f"{name}.png", np.rint(codes).astype(np.uint8))
+    np.save(folder / "midas.npy", np.broadcast_to(np.linspace(0.3, 0.7, 160), (90, 160)))
+    return folder
+
+
+@pytest.mark.parametrize("command", FOUND_COMMANDS)
+def test_found_from_pictures(command, series, capsys):
+    words = shlex.split(command)
+    assert _run(words, debug=True) == 0
+    out = series / words[words.index("-o") + 1]
+    assert (out / "surface_response.toml").is_file() if out.is_dir() else out.is_file()
 
 
 def test_baked_light(folder, capsys):

@@ -45,6 +45,14 @@ def test_an_exposure_that_is_not_asked_for_is_not_taken_for_light():
     assert blind.measures["whole"]["fitted"].psnr_db < asked.measures["whole"]["fitted"].psnr_db - 5
 
 
+def test_dimming_is_fitted_by_itself_where_the_reference_is_darker():
+    """Light that is added darkens nothing: a darker place tells of another exposure."""
+    prepared, darker = photographed(TRUTH, exposure=0.7)
+    assert fit(prepared, darker, dimming="auto").dimming.factor == pytest.approx(0.7, rel=0.01)
+    prepared, same = photographed(TRUTH)
+    assert fit(prepared, same, dimming="auto").dimming is None
+
+
 def test_a_white_balance_is_taken_up_by_three_channels():
     balance = np.array([0.8, 1.0, 1.3])
     prepared, reference = photographed(TRUTH, exposure=balance)
@@ -272,7 +280,7 @@ def test_a_lamp_that_shines_nowhere_is_refused():
     [
         ({"lamps": ("wram",)}, "there is no lamp 'wram'"),
         ({"lamps": ()}, "nothing to fit"),
-        ({"dimming": "two"}, "must be one of off, one, channels"),
+        ({"dimming": "two"}, "must be one of auto, off, one, channels"),
         ({"align": "yes"}, "must be one of auto, none"),
         ({"view": "left"}, "there is no view 'left'"),
     ],

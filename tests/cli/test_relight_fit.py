@@ -119,7 +119,10 @@ def test_dimming_bounce_and_response_are_said(capfd, folder):
         (["--fit-mask", "small.png"], "small.png: is 10×10 px"),
         (["--fit-mask", "black.png"], "black.png: selects nothing"),
         (["--fit-lamps", "left"], "--fit-lamps: there is no lamp 'left'"),
-        (["--fit-dimming", "two"], "--fit-dimming: must be one of off, one, channels, got 'two'"),
+        (
+            ["--fit-dimming", "two"],
+            "--fit-dimming: must be one of auto, off, one, channels, got 'two'",
+        ),
         (["--fit-align", "yes"], "--fit-align: must be one of auto, none"),
         (["--fit-report", "fit.txt"], "--fit-report: must end in .json"),
         (["--fit-figure", "fit.jpg"], "--fit-figure: must end in .png"),
@@ -138,7 +141,7 @@ def test_what_cannot_be_fitted_is_refused_before_anything_is_written(capfd, fold
 
 
 @pytest.mark.parametrize(
-    "more", [["--fit-bounce"], ["--fit-mask", "mask.png"], ["--no-fit-colour"]]
+    "more", [["--no-fit-bounce"], ["--fit-mask", "mask.png"], ["--no-fit-colour"]]
 )
 def test_options_of_a_fit_need_one(capfd, folder, more):
     given = ["relight", "--scene", "scene.toml", "--engine", "reference", "-o", "lit.png"]

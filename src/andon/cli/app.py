@@ -61,8 +61,8 @@ def relight(**typed: Any) -> None:
 
         andon relight --scene examples/basic/walk.toml --time 3 -o walk.png
 
-        andon relight off.png --scene room.toml --fit-to on.png --fit-dimming one --fit-bounce
-            --fit-mask wall.png --fit-figure fit.png --fit-report fit.json -o lit.png
+        andon relight off.png --scene room.toml --fit-to on.png --fit-mask wall.png
+            --fit-figure fit.png --fit-report fit.json -o lit.png
     """
     from andon.cli.relight import run
 

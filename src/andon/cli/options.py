@@ -138,21 +138,20 @@ class RelightOptions:
     fit_dimming: Annotated[
         str,
         typer.Option(
-            metavar="off|one|channels",
+            metavar="auto|off|one|channels",
             help="What is left of E0 is fitted too: one factor (also another exposure of the "
-            "reference), or three (white balance).",
+            "reference), or three (white balance). auto: one, where the reference is darker.",
         ),
-    ] = "off"
+    ] = "auto"
     fit_colour: Annotated[
         bool, typer.Option(help="Each lamp's three channels are free; else its flux alone.")
     ] = True
     fit_bounce: Annotated[
         bool,
         typer.Option(
-            "--fit-bounce",
-            help="A hemisphere of light is fitted too, for what surfaces reflect of the lamps.",
+            help="A hemisphere of light is fitted too, for what surfaces reflect of the lamps."
         ),
-    ] = False
+    ] = True
     fit_response: Annotated[
         bool,
         typer.Option(

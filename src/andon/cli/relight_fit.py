@@ -236,7 +236,8 @@ def _triple(values: Any) -> str:
 
 
 def _factors(light: FittedLight) -> str:
-    if (light.factor == light.factor[0]).all():
-        return f"{light.factor[0]:.4g} ± {light.error[0]:.1g}"
-    parts = zip(light.factor, light.error, strict=True)
-    return "[" + ", ".join(f"{factor:.4g} ± {error:.1g}" for factor, error in parts) + "]"
+    texts = [
+        f"{factor:.4g} ± {error:.1g}" if light.told_apart else f"{factor:.4g}"
+        for factor, error in zip(light.factor, light.error, strict=True)
+    ]
+    return texts[0] if (light.factor == light.factor[0]).all() else f"[{', '.join(texts)}]"

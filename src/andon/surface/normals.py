@@ -69,8 +69,8 @@ def planes_of_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -> t
     first plane, so that creases stay sharp and noise is averaged. Where depth stays rough, as that
     of depth cameras is, windows are wider.
 
-    The depth of a picture with noise is that of the 7×7 pixels' planes: one that scatters behind
-    its neighbours would lie in their shadow. Without noise it stays as it is. Holes are NaN in both.
+    The depth of a picture with noise is that of the planes of 7×7 pixels: one that scatters behind
+    its neighbours would lie in their shadow. Without noise it stays as it is. Holes: NaN in both.
 
     Parameters
     ----------

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from andon.calibrate.lamps.model import FitSettings
 from andon.calibrate.lamps.tables import check_lamps
+from andon.calibrate.lamps.target import Target
 from andon.calibrate.lamps.terms import Term
 from andon.engines.prepared import Prepared
 from andon.errors import InputError
+from andon.quantities import CameraFrame, photometric
 from andon.scene import Scene
 
 __all__ = [
@@ -17,6 +22,7 @@ __all__ = [
     "chosen_lamps",
     "free_amounts",
     "ridge_of",
+    "settled",
     "terms_of",
     "view_name",
 ]
@@ -26,6 +32,41 @@ Float = NDArray[np.float64]
 # Of the diagonal of the normal equations. Lamps at one place share their light evenly; where E0 is
 # the same everywhere, light from all sides is dimming, which holes get as well.
 RIDGE, RIDGE_OF_FILL = 1e-9, 1e-5
+# Of ``auto``: squares of so many pixels, brighter than this share of white, of which at least a
+# twentieth is darker in the reference than noise and alignment make it.
+SQUARE_PX, LEAST_LEVEL, LEAST_DARKER, DARKER = 16, 0.01, 0.05, 0.93
+
+
+def settled(
+    settings: FitSettings, prepared: Prepared, frame: CameraFrame, target: Target, /
+) -> FitSettings:
+    """`settings` with what ``auto`` is: dimming by one factor where the reference is darker."""
+    if settings.dimming != "auto":
+        return settings
+    is_left = all(prepared.ambient.dimming) and prepared.ambient.dimming_mode == "linear"
+    return replace(settings, dimming="one" if is_left and _is_darker(frame, target) else "off")
+
+
+def _is_darker(frame: CameraFrame, target: Target) -> bool:
+    """Squares of the reference are darker than in the photograph: it was exposed less."""
+    known = target.seen & ~target.white.any(axis=-1)
+    if frame.clipped is not None:
+        known &= ~frame.clipped
+    share = _squares(known.astype(np.float64))
+    before, after = (
+        _squares(np.where(known, photometric(np.asarray(picture, np.float64)), 0.0))
+        for picture in (frame.linear, target.linear)
+    )
+    told = (share > 0.5) & (before > LEAST_LEVEL * share)
+    return bool(told.any() and np.mean(after[told] < DARKER * before[told]) > LEAST_DARKER)
+
+
+def _squares(picture: Float) -> Float:
+    """Means of squares; the rest at the right and at the bottom is left out."""
+    rows, columns = (max(size // SQUARE_PX, 1) for size in picture.shape)
+    height, width = picture.shape[0] // rows, picture.shape[1] // columns
+    part: Any = picture[: rows * height, : columns * width]
+    return part.reshape(rows, height, columns, width).mean(axis=(1, 3))
 
 
 def free_amounts(terms: tuple[Term, ...], settings: FitSettings, /) -> Float:

@@ -14,6 +14,7 @@ from andon.calibrate.lamps.asked import (
     chosen_lamps,
     free_amounts,
     ridge_of,
+    settled,
     terms_of,
     view_name,
 )
@@ -113,8 +114,9 @@ class _Fit:
         chosen = chosen_lamps(self.scene, self.prepared, settings)
         self.frame = self.prepared.frames[view_name(self.prepared, settings.view)]
         self.view = self._distorted_view()
-        self.terms = terms_of(chosen, settings, self.prepared)
         self.target = target_of(reference, self.frame, self.view, settings.align)
+        self.settings = settings = settled(settings, self.prepared, self.frame, self.target)
+        self.terms = terms_of(chosen, settings, self.prepared)
         self.mask = None if mask is None else mask_of(mask, self.view)
         self._check_response()
         self._drawn, self._progress = 0, progress

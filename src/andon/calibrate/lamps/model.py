@@ -21,7 +21,7 @@ __all__ = ["Dimming", "FitSettings", "FittedFill", "FittedLight", "LampFit"]
 
 Float = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Dimming = Literal["off", "one", "channels"]
+Dimming = Literal["auto", "off", "one", "channels"]
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,9 @@ class FitSettings:
     ----------
     lamps : names of the lamps whose light is fitted; None: all of the scene's own.
     dimming : what of E0 is left: ``off``, as the scene states; ``one`` factor, which also takes up
-        another exposure of the reference; three ``channels``, which take up a white balance.
+        another exposure of the reference; three ``channels``, which take up a white balance;
+        ``auto``, one where the reference is darker than the photograph somewhere, since light
+        that is added darkens nothing.
     colour : each lamp's three channels are free; else its flux alone, in its own colour.
     bounce : a sky and a ground of equal luminances are fitted too, for what surfaces reflect.
     response : the camera's response is chosen from a family, by the error in encoded values.

@@ -10,11 +10,16 @@ __all__ = ["notes_of"]
 
 # Above it so much contradicts the fit that one should look why.
 NOTABLE_REJECTED = 0.1
+# From such a share of the picture holes catch the eye, and from such an error of encoded values
+# (34 dB) more than the camera's noise is wrong.
+NOTABLE_HOLES, NOTABLE_ERROR = 0.005, 0.02
 
 
 def notes_of(fit: LampFit, /) -> tuple[str, ...]:
     """One line each."""
-    return (*_on_same(fit), *_on_motion(fit), *_on_terms(fit), *_on_white(fit), *_on_error(fit))
+    on_scene = (*_on_holes(fit), *_on_ambient(fit))
+    on_fit = (*_on_motion(fit), *_on_terms(fit), *_on_white(fit), *_on_error(fit))
+    return (*_on_same(fit), *on_fit, *on_scene)
 
 
 def _on_same(fit: LampFit) -> list[str]:
@@ -82,3 +87,28 @@ def _on_error(fit: LampFit) -> list[str]:
             "places of lamps, E0 and the response"
         )
     return notes
+
+
+def _on_holes(fit: LampFit) -> list[str]:
+    surface = None if fit.scene is None else fit.scene.surface
+    if surface is None or surface.depth is None or surface.depth.fill_px:
+        return []
+    share = float(fit.holes.mean())
+    if share < NOTABLE_HOLES:
+        return []
+    return [
+        f"{share:.1%} of the picture are holes of the depth, which get no light: "
+        "surface.depth.fill_px closes those of up to so many pixels"
+    ]
+
+
+def _on_ambient(fit: LampFit) -> list[str]:
+    ambient = None if fit.scene is None else fit.scene.ambient
+    is_even = ambient is not None and ambient.illuminance_lux is not None
+    whole = fit.measures["inside" if fit.mask is not None else "whole"]
+    if not is_even or whole["fitted"].rmse_encoded < NOTABLE_ERROR:
+        return []
+    return [
+        "E0 is stated as the same everywhere: what was in shadow gets too little light, and what "
+        "was in bright light too much; andon calibrate ambient estimates a map of it"
+    ]

@@ -73,9 +73,8 @@ def _along_rows(inverse: Float, max_jump: float) -> tuple[Float, Int]:
         on_left = first + (column - start) * ahead
         on_right = last + (end - column) * back
         from_left = (left >= 0) & ((right == width) | (first < last))
-        value: Float = np.asarray(
-            np.where(joined, line, np.where(from_left, on_left, on_right)), np.float64
-        )
+        one_side: Float = np.asarray(np.where(from_left, on_left, on_right), np.float64)
+        value: Float = np.asarray(np.where(joined, line, one_side), np.float64)
     gap = np.where((left >= 0) | (right < width), right - left - 1, width + height)
     return value, gap
 

@@ -38,6 +38,9 @@ ROUGH = 2e-4
 # Noise of the whole picture by `_level`: what smooth balls of 7 px radius have, and what structured
 # light at its best. Below the first, what is rough in a picture is relief.
 CLEAN, NOISY = 4e-4, 5.5e-4
+# From where the planes say better than the pixels how deep it is: at the first (0.15 % RMS) they
+# round creases by as much as noise moves pixels.
+ROUNDED, SCATTERED = 1e-3, 2e-3
 LAG_PX = 2
 # A window of twice the size sees about as much noise, four times the curvature, and more of an
 # edge. Between the two ratios the normals pass over.
@@ -69,8 +72,8 @@ def planes_of_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -> t
     first plane, so that creases stay sharp and noise is averaged. Where depth stays rough, as that
     of depth cameras is, windows are wider.
 
-    The depth of a picture with noise is that of the planes of 7×7 pixels: one that scatters behind
-    its neighbours would lie in their shadow. Without noise it stays as it is. Holes: NaN in both.
+    The depth of a picture with much noise is that of the planes of 7×7 pixels: one that scatters
+    behind its neighbours would lie in their shadow. Else it stays as it is. Holes: NaN in both.
 
     Parameters
     ----------
@@ -82,19 +85,24 @@ def planes_of_depth(depth: Float, view: View, /, *, max_jump: float = 0.05) -> t
     image = _Pixels(view) if view.projection == "pinhole" else _TangentPlanes(view)
     affine, bent = _fit(inverse, max_jump, None, image)
     affine, scatter = _fit(inverse, max_jump, affine, image)
-    noisy = min(max((_level(inverse) - CLEAN) / (NOISY - CLEAN), 0.0), 1.0)
-    near = affine[..., 0]
-    if noisy:
-        share = noisy * _share_of_noise(inverse, max_jump, bent, scatter, image)
+    level, near = _level(inverse), affine[..., 0]
+    if level > CLEAN:
+        share = _share_of_noise(inverse, max_jump, bent, scatter, image)
+        share *= _between(CLEAN, NOISY, level)
         affine = _widened(inverse, max_jump, affine, scatter, share, image)
     plane = image.plane(affine)
     plane *= np.sign(np.einsum("...i,...i->...", plane, view.rays_planar()))[..., None]
     with np.errstate(invalid="ignore", divide="ignore"):
         normals = -plane / np.linalg.norm(plane, axis=-1, keepdims=True)
-        smooth = depth + noisy * (1 / near - depth)
+        smooth = depth + _between(ROUNDED, SCATTERED, level) * (1 / near - depth)
     normals[~np.isfinite(depth)] = np.nan
     on_it = np.abs(smooth - depth) <= max_jump * depth
     return rotate(view.world_from_camera, normals), np.where(on_it, smooth, depth)
+
+
+def _between(low: float, high: float, value: float) -> float:
+    """0 up to `low`, 1 from `high` on."""
+    return min(max((value - low) / (high - low), 0.0), 1.0)
 
 
 def _level(inverse: Float) -> float:

@@ -111,6 +111,44 @@ def test_dimming_bounce_and_response_are_said(capfd, folder):
         assert words in " ".join(outcome.err.split())
 
 
+def test_another_exposure_is_taken_up_unless_it_is_switched_off(capfd, folder):
+    on = read_picture(folder / "on.png").values
+    write_png(folder / "darker.png", (0.6 * on).astype(np.uint8))
+
+    def psnr(*more):
+        outcome = fitted(capfd, "--fit-report", "fit.json", *more, reference="darker.png")
+        assert outcome.code == 0, outcome.err
+        report = json.loads((folder / "fit.json").read_text())
+        return report["errors"]["whole"]["fitted"]["psnr_db"], report["dimming"]
+
+    alone, nothing = psnr("--fit-dimming", "off")
+    assert nothing is None
+    assert psnr()[0] > alone + 5
+
+
+def test_a_scene_that_leaves_no_light_has_no_dimming_to_fit(capfd, folder):
+    text = (folder / "scene.toml").read_text()
+    assert "dimming" not in text
+    dark = text.replace("[ambient]", "[ambient]\ndimming = 0.0")
+    (folder / "dark.toml").write_text(dark)
+    outcome = fitted(capfd, "--fit-report", "fit.json", scene="dark.toml")
+    assert outcome.code == 0, outcome.err
+    assert json.loads((folder / "fit.json").read_text())["dimming"] is None
+
+
+def test_what_harms_a_fit_is_said(capfd, folder):
+    """Holes that nobody closes, and E0 that is not the same everywhere."""
+    depth = np.load(folder / "depth.npy")
+    depth[:6, :20] = np.nan
+    np.save(folder / "depth.npy", depth)
+    uneven = read_picture(folder / "photo.png").values.copy()
+    uneven[:, :32] //= 2
+    write_png(folder / "photo.png", uneven)
+    said = " ".join(fitted(capfd).err.split())
+    assert "surface.depth.fill_px closes those" in said
+    assert "andon calibrate ambient estimates a map" in said
+
+
 @pytest.mark.parametrize(
     ("more", "words"),
     [

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from andon.verify.psnr import psnr_db
 from andon.verify.registry import rows
 from andon.verify.rows import synthetic
 from andon.verify.run import chosen, measured
@@ -16,7 +17,7 @@ def small(monkeypatch):
     monkeypatch.setattr(synthetic, "WIDTH", 80)
     monkeypatch.setattr(synthetic, "HEIGHT", 45)
     monkeypatch.setattr(synthetic, "CUTS", 0)
-    caches = synthetic._truth, synthetic._relit, synthetic.relit_psnr
+    caches = synthetic._truth, synthetic.relit_frame, synthetic.relit_psnr
     for cache in caches:
         cache.cache_clear()
     yield
@@ -35,7 +36,8 @@ def test_what_was_lit_is_relit(monkeypatch, tmp_path):
     with Image.open(tmp_path / "synthetic-reference.png") as sheet:
         assert sheet.size == (160, 90)
     captured, relit, _ = synthetic._truth(0)
-    unchanged = synthetic.psnr_db(synthetic._encoded(captured), synthetic._encoded(relit))
+    white = synthetic._white_cd_m2()
+    unchanged = psnr_db(synthetic._encoded(captured, white), synthetic._encoded(relit, white))
     assert unchanged < 25, "the light has to change for the figure to mean something"
 
 
@@ -46,7 +48,7 @@ def test_shaders_relight_it_too():
 
 def test_psnr():
     black = np.zeros((2, 2, 3))
-    assert synthetic.psnr_db(black, black + 0.1) == pytest.approx(20)
+    assert psnr_db(black, black + 0.1) == pytest.approx(20)
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from andon.cli.bake_app import bake_app
+from andon.cli.bracket import AlignOption, ListOption, PhotosArgument, SecondsOption
 from andon.cli.calibrate_app import calibrate_app
 from andon.cli.depth_app import depth_app
 from andon.cli.glare_app import glare_app
@@ -117,21 +118,10 @@ def fuse(
         Path,
         typer.Option("-o", "--out", help="PNG, JPEG: exposure fusion; EXR, HDR: relative light."),
     ],
-    photos: Annotated[
-        list[Path] | None, typer.Argument(help="PNG or JPEG, two or more of one size.")
-    ] = None,
-    seconds: Annotated[
-        str | None,
-        typer.Option(help="Exposures in the photographs' order: 1/320,1/80,1/20. Default: EXIF."),
-    ] = None,
-    exposures: Annotated[
-        Path | None,
-        typer.Option("--list", help="Names and exposures of the photographs, a line each."),
-    ] = None,
-    align: Annotated[
-        str,
-        typer.Option(metavar="auto|none|shift|ecc", help="Of hand-held photographs; ecc turns."),
-    ] = "auto",
+    photos: PhotosArgument = None,
+    seconds: SecondsOption = None,
+    exposures: ListOption = None,
+    align: AlignOption = "auto",
     sheet: Annotated[
         Path | None, typer.Option(help="Contact sheet of the photographs and the result.")
     ] = None,

@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from andon.cli.console import check_apart, note
 from andon.errors import InputError
@@ -16,7 +18,32 @@ if TYPE_CHECKING:
     from andon.capture.brackets import Bracket
     from andon.files.pictures import Picture
 
-__all__ = ["BracketOptions", "aligned_bracket", "check_bracket", "read_bracket"]
+__all__ = [
+    "AlignOption",
+    "BracketOptions",
+    "ListOption",
+    "PhotosArgument",
+    "SecondsOption",
+    "aligned_bracket",
+    "check_bracket",
+    "read_bracket",
+]
+
+PhotosArgument = Annotated[
+    list[Path] | None, typer.Argument(help="PNG or JPEG, two or more of one size.")
+]
+SecondsOption = Annotated[
+    str | None,
+    typer.Option(help="Exposures in the photographs' order: 1/320,1/80,1/20. Default: EXIF."),
+]
+ListOption = Annotated[
+    Path | None,
+    typer.Option("--list", help="Names and exposures of the photographs, a line each."),
+]
+AlignOption = Annotated[
+    str,
+    typer.Option(metavar="auto|none|shift|ecc", help="Of hand-held photographs; ecc turns."),
+]
 
 
 @dataclass(frozen=True)

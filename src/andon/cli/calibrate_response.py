@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from andon.cli.bracket import BracketOptions, aligned_bracket, check_bracket, read_bracket
+from andon.cli.bracket import (
+    AlignOption,
+    BracketOptions,
+    ListOption,
+    PhotosArgument,
+    SecondsOption,
+    aligned_bracket,
+    check_bracket,
+    read_bracket,
+)
 from andon.cli.console import check_writable, note
 
 if TYPE_CHECKING:
@@ -27,21 +36,10 @@ def response(
     out: Annotated[
         Path, typer.Option("-o", "--out", help="The response (CSV), for capture.response.file.")
     ],
-    photos: Annotated[
-        list[Path] | None, typer.Argument(help="PNG or JPEG, two or more of one size.")
-    ] = None,
-    seconds: Annotated[
-        str | None,
-        typer.Option(help="Exposures in the photographs' order: 1/320,1/80,1/20. Default: EXIF."),
-    ] = None,
-    exposures: Annotated[
-        Path | None,
-        typer.Option("--list", help="Names and exposures of the photographs, a line each."),
-    ] = None,
-    align: Annotated[
-        str,
-        typer.Option(metavar="auto|none|shift|ecc", help="Of hand-held photographs; ecc turns."),
-    ] = "auto",
+    photos: PhotosArgument = None,
+    seconds: SecondsOption = None,
+    exposures: ListOption = None,
+    align: AlignOption = "auto",
     figure: Annotated[
         Path | None, typer.Option(help="PNG: the curves on their data, residuals, exposures.")
     ] = None,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping
 from dataclasses import fields
@@ -113,12 +112,11 @@ def write_fit(options: RelightOptions, fit: LampFit) -> None:
     """Report, figure and scene, where they were asked for."""
     from andon.calibrate.lamps.figure import fit_figure
     from andon.calibrate.lamps.report import fit_report
-    from andon.files.atomic import write_bytes
+    from andon.files.atomic import write_bytes, write_json
     from andon.files.pictures import write_picture
 
     if options.fit_report is not None:
-        text = json.dumps(fit_report(fit), indent=2, ensure_ascii=False, allow_nan=False)
-        write_bytes(options.fit_report, (text + "\n").encode())
+        write_json(options.fit_report, fit_report(fit))
     if options.fit_figure is not None:
         write_picture(options.fit_figure, fit_figure(fit))
     if options.fit_scene is not None and fit.scene is not None:

@@ -20,7 +20,7 @@ Why so
 ==========================  ====================================================================
 other way                   why not
 ==========================  ====================================================================
-E0 the same everywhere      twice to five times the error (``andon verify relight.ambient``)
+E0 the same everywhere      1.4 to 8 times the error (``andon verify relight.ambient``)
 log I itself, smoothed      a dark floor becomes a dark light: reflectance is imprinted
 Retinex without geometry    a crease looks like an edge of reflectance
 nine harmonics of normals   no place: 3 to 4 times the error of this field, fitted to the truth
